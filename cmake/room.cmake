@@ -1,0 +1,28 @@
+# A room is one static library of one folder; its links are the arrows that docs/architecture.md draws.
+#   glidehelm_room(ocean DIRECTORY core/ocean LINKS PUBLIC glidehelm::base PRIVATE …)
+# Sources are every *.cpp of the folder (not of its sub-folders).
+function(glidehelm_room name)
+  cmake_parse_arguments(ROOM "" "DIRECTORY" "LINKS" ${ARGN})
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${ROOM_DIRECTORY}/*.cpp)
+  if(sources)
+    add_library(glidehelm_${name} STATIC ${sources})
+    set(kind PUBLIC)
+    glidehelm_flags(glidehelm_${name})
+  else()
+    add_library(glidehelm_${name} INTERFACE)
+    set(kind INTERFACE)
+    list(TRANSFORM ROOM_LINKS REPLACE "^(PUBLIC|PRIVATE)$" "INTERFACE")
+  endif()
+  target_include_directories(glidehelm_${name} ${kind} ${PROJECT_SOURCE_DIR})
+  target_link_libraries(glidehelm_${name} ${ROOM_LINKS})
+  add_library(glidehelm::${name} ALIAS glidehelm_${name})
+endfunction()
+
+# A program of one main file.
+function(glidehelm_program name)
+  cmake_parse_arguments(PROGRAM "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(${name} ${PROGRAM_SOURCES})
+  glidehelm_flags(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${PROGRAM_LINKS})
+endfunction()

@@ -1,0 +1,8 @@
+# -DGLIDEHELM_SANITIZE=address,undefined (or thread) instruments everything that the project builds.
+if(GLIDEHELM_SANITIZE)
+  add_compile_options(-fsanitize=${GLIDEHELM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${GLIDEHELM_SANITIZE})
+  if(GLIDEHELM_SANITIZE MATCHES "undefined")
+    add_compile_options(-fsanitize=float-divide-by-zero,float-cast-overflow)
+  endif()
+endif()

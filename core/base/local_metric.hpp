@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/base/geo.hpp"
+#include "core/base/units.hpp"
+
+namespace glidehelm {
+
+/// The WGS84 metric at one latitude: what an inner loop multiplies with instead of solving geodesics.
+///
+/// dφ = north / M(φ), dλ = east / (N(φ) cos φ), evaluated at the *current* latitude at every step (a frame or a sphere
+/// fixed at the start is not enough). Over one stint of 30 km, integrated with the midpoint rule, this agrees with
+/// GeographicLib to 1e-4 at every latitude to 80° and across the antimeridian (tests/core/base/local_metric_test.cpp).
+struct LocalMetric {
+  double meridian_radius;  ///< M(φ), metres per radian of latitude
+  double parallel_radius;  ///< N(φ)·cos φ, metres per radian of longitude
+
+  static LocalMetric at(double lat_rad) {
+    const double s = std::sin(lat_rad);
+    const double w2 = 1.0 - kEccentricity2 * s * s;
+    const double w = std::sqrt(w2);
+    const double n = kEquatorialRadius / w;
+    return {n * (1.0 - kEccentricity2) / w2, n * std::cos(lat_rad)};
+  }
+
+  static constexpr double kEquatorialRadius = 6378137.0;
+  static constexpr double kFlattening = 1.0 / 298.257223563;
+  static constexpr double kEccentricity2 = kFlattening * (2.0 - kFlattening);
+};
+
+/// A displacement in metres of east and north.
+struct Offset {
+  double east, north;
+  [[nodiscard]] double length() const { return std::hypot(east, north); }
+};
+
+/// Straight-line offset between two near positions with the metric at their middle latitude; the longitude difference
+/// is folded. Error below 1e-4 of the length up to 50 km at latitudes to 80°. Radians in, metres out.
+inline Offset local_offset(double lat0, double lon0, double lat1, double lon1) {
+  const auto metric = LocalMetric::at(0.5 * (lat0 + lat1));
+  double dlon = lon1 - lon0;
+  if (dlon > kPi || dlon < -kPi) dlon = std::remainder(dlon, 2 * kPi);
+  return {dlon * metric.parallel_radius, (lat1 - lat0) * metric.meridian_radius};
+}
+
+/// Great-circle distance on a sphere whose radius makes it a lower bound of the geodesic distance: for admissible
+/// heuristics over any range. The radius is the smallest radius of curvature of WGS84, M(0) = 6335439 m, so the bound
+/// is at most 0.7 % below the true distance.
+double distance_lower_bound(double lat0, double lon0, double lat1, double lon1);
+
+}  // namespace glidehelm

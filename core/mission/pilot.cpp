@@ -1,0 +1,640 @@
+#include "core/mission/pilot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/text.hpp"
+#include "core/base/utc.hpp"
+
+namespace glidehelm::mission {
+
+namespace {
+
+constexpr std::size_t kRemembered = 16;               // fixes kept for recognising repeats
+constexpr Seconds kEmitBeforeDeadline{30};            // product.md 4.6
+constexpr double kStrongestCurrent = 2.5;             // m/s, for the jump limit: Gulf Stream with a margin
+constexpr double kMoveForReplacement = 1000.0;        // m, product.md 4.2
+constexpr double kWaterChange = 0.005;                // m/s: 70 m over a stint of 4 h
+constexpr double kInlandRefused = 500.0;              // m, product.md 4.2
+constexpr Seconds kSkewHeld{300};                     // product.md 4, Clocks
+constexpr Seconds kSecondFixApart{60};                // trust.md I-5
+
+Tick later(Tick t, Seconds dt) { return t + std::chrono::duration_cast<Tick::duration>(dt); }
+
+/// A position as a pilot reads it: three decimals of a degree are 100 m.
+std::string place(GeoPoint p) { return fmt::format("{:.4f},{:.4f}", p.lat.degrees(), p.lon.degrees()); }
+
+std::string hours(Seconds t) {
+  const auto minutes = static_cast<long>(std::llround(t.count() / 60.0));
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+std::string clock_text(Instant t) { return utc_text(t); }
+
+}  // namespace
+
+std::string_view word(Stage stage) {
+  switch (stage) {
+    case Stage::idle: return "idle";
+    case Stage::planning: return "planning";
+    case Stage::proposed: return "proposed";
+    case Stage::emitting: return "emitting";
+    case Stage::queued: return "queued";
+    case Stage::kept: return "kept";
+    case Stage::stood_down: return "stood down";
+    case Stage::dived: return "under water";
+  }
+  return "?";
+}
+
+Pilot::Pilot(std::string glider) : glider_{std::move(glider)} {}
+
+Effects Pilot::step(const Event& event) {
+  now_ = event.now;
+  out_.clear();
+  std::visit([this](const auto& what) { on(what); }, event.what);
+  return std::move(out_);
+}
+
+bool Pilot::awaits_answer() const {
+  if (stage_ == Stage::emitting) return true;
+  if (stage_ != Stage::planning) return false;
+  if (!planning_over_) return true;
+  return std::any_of(ranked_.begin(), ranked_.end(), [](const Ranked& r) { return r.proof == Ranked::Proof::asked; });
+}
+
+// ---- accepting a fix ------------------------------------------------------------------------------------------------
+
+void Pilot::on(const SurfacingHeard& e) {
+  const auto& s = e.surfacing;
+  if (is_duplicate(s)) {
+    take_repeat(s);
+    return;
+  }
+  if (auto refusal = objection(e)) {
+    on(FixRefused{*refusal});
+    return;
+  }
+  if (stage_ != Stage::idle && is_same_surfacing(s)) {
+    take_later_fix(s);
+  } else {
+    open_surfacing(s);
+  }
+}
+
+void Pilot::on(const FixRefused& e) {
+  record("refusal", e.refusal.rule + ": " + e.refusal.reason);
+  say(Level::note, "refused-fix", fmt::format("fix refused ({}): {}", e.refusal.rule, e.refusal.reason));
+}
+
+bool Pilot::is_duplicate(const model::Surfacing& s) const {
+  return std::any_of(recent_.begin(), recent_.end(), [&](const model::Surfacing& r) { return model::same_fix(r, s); });
+}
+
+/// A surfacing is one mission segment when the segment is printed, else all fixes without submerged time between them.
+bool Pilot::is_same_surfacing(const model::Surfacing& s) const {
+  if (!last_) return false;
+  if (!s.segment.empty() && !segment_.empty()) return s.segment == segment_;
+  if (dived_at_ && s.fix_taken > *dived_at_) return false;
+  const Seconds window = mission_ ? mission_->window_max : Seconds{900};
+  return between(last_->fix_taken, s.fix_taken) <= window;
+}
+
+std::optional<model::Refusal> Pilot::objection(const SurfacingHeard& e) {
+  const auto& s = e.surfacing;
+  const auto refuse = [&](std::string rule, std::string reason) {
+    return model::Refusal{std::move(rule), std::move(reason), s.glider, s.heard, s.lat_ddmm, s.lon_ddmm};
+  };
+  if (!equal_without_case(s.glider, glider_))
+    return refuse("S2", fmt::format("the dialog is of glider {}, this line is configured for {}", s.glider, glider_));
+  if (last_ && s.fix_taken <= last_->fix_taken)
+    return refuse("S6", fmt::format("the fix of {} is not newer than the last accepted one of {}", clock_text(s.fix_taken),
+                                    clock_text(last_->fix_taken)));
+  if (dived_at_ && s.fix_taken < *dived_at_)
+    return refuse("S6", fmt::format("the fix of {} is from before the dive at {}", clock_text(s.fix_taken), clock_text(*dived_at_)));
+  if (e.coast_distance && e.coast_distance->si() < -kInlandRefused)
+    return refuse("S5", fmt::format("the fix {} lies {:.1f} km inside the coastline; allowed is 0.5 km", place(s.fix),
+                                    -e.coast_distance->si() / 1000));
+  return jump(s);
+}
+
+/// S5: no fix farther away than physics allows, unless a second fix, at least a minute later, agrees with the first.
+std::optional<model::Refusal> Pilot::jump(const model::Surfacing& s) {
+  if (!last_) return std::nullopt;
+  const double speed = 1.2 * ((mission_ ? mission_->horizontal_speed.si() : 0.5) + kStrongestCurrent);
+  const auto reach = [&](const model::Surfacing& from) { return speed * between(from.fix_taken, s.fix_taken).count() + 1000.0; };
+  const double moved = distance(last_->fix, s.fix).si();
+  if (moved <= reach(*last_)) {
+    quarantined_.reset();
+    return std::nullopt;
+  }
+  if (quarantined_ && between(quarantined_->fix_taken, s.fix_taken) >= kSecondFixApart &&
+      distance(quarantined_->fix, s.fix).si() <= reach(*quarantined_)) {
+    say(Level::clear, "jump", fmt::format("a second fix at {} confirms the jump of {:.0f} km", place(s.fix), moved / 1000));
+    quarantined_.reset();
+    return std::nullopt;
+  }
+  quarantined_ = s;
+  return model::Refusal{"S5",
+                        fmt::format("the fix {} is {:.1f} km from the last one ({} earlier); at most {:.1f} km are possible. "
+                                    "It is taken when a second fix at least a minute later agrees",
+                                    place(s.fix), moved / 1000, hours(between(last_->fix_taken, s.fix_taken)), reach(*last_) / 1000),
+                        s.glider, s.heard, s.lat_ddmm, s.lon_ddmm};
+}
+
+/// The same fix printed again changes nothing but what the block says beside it: mission, window, water velocity.
+void Pilot::take_repeat(const model::Surfacing& s) {
+  if (stage_ == Stage::idle || !last_ || !model::same_fix(*last_, s)) {
+    record("duplicate", fmt::format("fix of {} heard again", clock_text(s.fix_taken)));
+    return;
+  }
+  if (stage_ == Stage::dived) {
+    record("duplicate", fmt::format("fix of {} heard again after the dive", clock_text(s.fix_taken)));
+    return;
+  }
+  note_dialog(s);
+  if (!plan_again_for_water(s)) emit_if_due();
+}
+
+/// The connection block may still print the initial current; the glider dives with the final one of the at-surface
+/// block. A plan for another current is aimed wrong by the difference times the stint.
+bool Pilot::plan_again_for_water(const model::Surfacing& s) {
+  const auto water = believed_current(s, rotation_.clockwise);
+  if (!water || stage_ != Stage::planning || !mission_) return false;
+  const double change = believed_ ? std::hypot(water->east.si() - believed_->east.si(), water->north.si() - believed_->north.si())
+                                  : water->speed().si();
+  if (change < kWaterChange) return false;
+  believed_ = water;
+  last_->water = s.water;
+  last_->water_is_final = s.water_is_final;
+  say(Level::info, "water", fmt::format("the measured current became {:.2f} m/s towards {:03.0f} deg: planning again", water->speed().si(),
+                                        Course::of(water->east.si(), water->north.si()).degrees()));
+  plan_again();
+  return true;
+}
+
+void Pilot::plan_again() {
+  if (stage_ == Stage::planning && !planning_over_) out_.push_back(StopPlanning{request_});
+  budget_over_ = planning_over_ = false;
+  ranked_.clear();
+  problem_.clear();
+  stage_ = Stage::planning;
+  begin_planning();
+}
+
+void Pilot::remember(const model::Surfacing& s) {
+  last_ = s;
+  recent_.push_back(s);
+  if (recent_.size() > kRemembered) recent_.pop_front();
+}
+
+/// What a block says beside the fix. A value once known is not lost when a later block leaves it out.
+void Pilot::note_dialog(const model::Surfacing& s) {
+  if (!s.segment.empty()) segment_ = s.segment;
+  if (s.at_surface) {
+    at_surface_seen_ = true;
+    const bool named = mission_ && (mission_->slocum_mission.empty() || equal_without_case(mission_->slocum_mission, s.mission));
+    mission_named_ = named;
+    wrong_mission_ = named ? "" : s.mission;
+  }
+  if (s.until_diving) set_deadline(later(now_.tick, *s.until_diving));
+}
+
+void Pilot::open_surfacing(const model::Surfacing& s) {
+  if (next_mission_) {
+    mission_ = std::move(next_mission_);
+    mission_sha_ = next_sha_;
+    skew_ok_ = next_skew_ok_;
+    next_mission_.reset();
+    arrived_ = false;
+  }
+  if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
+  key_ = fmt::format("{}/{}", glider_, clock_text(s.fix_taken));
+  segment_.clear();
+  dived_at_.reset();
+  ++count_;
+  at_surface_seen_ = mission_named_ = budget_over_ = planning_over_ = transfer_began_ = replacing_ = false;
+  wrong_mission_.clear();
+  ranked_.clear();
+  problem_.clear();
+  planned_from_.reset();
+  first_heard_ = now_.tick;
+  deadline_ = Tick{};
+  for (const Timer t : {Timer::late_note, Timer::late_alert, Timer::late_page}) cancel_timer(t);
+  if (late_said_) say(Level::clear, "late", "the glider called: all clear");
+  late_said_ = false;
+
+  rotation_ = frame_rotation(mission_ ? mission_->frame_rotation : std::nullopt, s.magnetic_variation, s.fix);
+  believed_ = believed_current(s, rotation_.clockwise);
+  const Seconds skew{std::abs(static_cast<double>((s.curr_time.time_since_epoch() -
+                                                   std::chrono::floor<std::chrono::seconds>(s.heard.time_since_epoch()))
+                                                      .count()))};
+  skew_.reset();
+  if (skew > kSkewHeld && !skew_ok_)
+    skew_ = fmt::format("the glider's clock differs from ours by {:.0f} s; allowed are 300 s (clock_skew_ok: true accepts it)", skew.count());
+  greet(s, believed_);
+  remember(s);
+  record("surfacing", fmt::format("accepted fix {} taken {}", place(s.fix), clock_text(s.fix_taken)));
+  set_deadline(later(now_.tick, mission_ ? mission_->window_max : Seconds{900}));
+  note_dialog(s);
+  stage_ = Stage::planning;
+  out_.push_back(InspectFolder{});
+  if (!mission_) {
+    keep("no-mission", "no mission is configured for this glider");
+    return;
+  }
+  if (skew_) say(Level::alert, "clock", *skew_ + ": planning, but nothing is emitted");
+  begin_planning();
+}
+
+/// A later fix of the same surfacing updates the state; our queued file is exchanged only when the glider has moved on.
+void Pilot::take_later_fix(const model::Surfacing& s) {
+  const auto moved_from = planned_from_.value_or(s.fix);
+  const double moved = distance(moved_from, s.fix).si();
+  remember(s);
+  record("surfacing", fmt::format("later fix {} taken {}, {:.0f} m from the first", place(s.fix), clock_text(s.fix_taken), moved));
+  if (stage_ == Stage::dived) return;
+  note_dialog(s);
+  if (moved <= kMoveForReplacement || transfer_began_ || stage_ != Stage::queued) {
+    emit_if_due();
+    return;
+  }
+  say(Level::info, "later-fix", fmt::format("the glider drifted {:.1f} km since the plan was made: planning again", moved / 1000));
+  replacing_ = true;
+  plan_again();
+}
+
+void Pilot::greet(const model::Surfacing& s, std::optional<Current> measured) {
+  std::string text = fmt::format("surfacing {}: fix {} taken {}", count_, place(s.fix), clock_text(s.fix_taken));
+  if (measured)
+    text += fmt::format(", measured current {:.2f} m/s towards {:03.0f} deg", measured->speed().si(),
+                        Course::of(measured->east.si(), measured->north.si()).degrees());
+  if (mission_) text += fmt::format(", {:.1f} km to the goal", distance(s.fix, mission_->goal).si() / 1000);
+  if (expected_place_)
+    text += fmt::format(", {:.1f} km from where it was expected", distance(*expected_place_, s.fix).si() / 1000);
+  say(Level::info, "surfacing", text);
+  if (mission_ && !arrived_ && distance(s.fix, mission_->goal) <= mission_->goal_radius) {
+    arrived_ = true;
+    say(Level::info, "arrived", fmt::format("mission {} arrived: {:.1f} km from the goal", mission_->name,
+                                            distance(s.fix, mission_->goal).si() / 1000));
+  }
+}
+
+// ---- the window -----------------------------------------------------------------------------------------------------
+
+void Pilot::set_deadline(Tick deadline) {
+  const Seconds cap = mission_ ? mission_->window_max : Seconds{900};
+  deadline_ = std::min(deadline, later(first_heard_, cap));
+  set_timer(Timer::deadline, later(deadline_, -kEmitBeforeDeadline));
+}
+
+void Pilot::on(const WindowHeard& e) {
+  if (stage_ == Stage::idle || stage_ == Stage::dived) return;
+  set_deadline(later(now_.tick, e.until_diving));
+}
+
+void Pilot::on(const WindowExtended& e) {
+  if (stage_ == Stage::idle || stage_ == Stage::dived) return;
+  set_deadline(later(deadline_, e.by));
+  say(Level::info, "window", fmt::format("somebody extended the window by {:.0f} s", e.by.count()));
+}
+
+void Pilot::on(const DiveBegan&) {
+  if (stage_ == Stage::idle || stage_ == Stage::dived) return;
+  dived_at_ = now_.utc;
+  if (stage_ == Stage::planning || stage_ == Stage::proposed)
+    keep("dived", "the glider dived before a file was ready");
+  if (request_ != 0) out_.push_back(StopPlanning{request_});
+  cancel_timer(Timer::deadline);
+  cancel_timer(Timer::budget);
+  stage_ = Stage::dived;
+  say(Level::info, "dived", "the glider goes under");
+}
+
+void Pilot::on(const TransferHeard& e) {
+  if (mission_ && !lower(e.file).ends_with(fmt::format("goto_l{:02}.ma", mission_->slot))) return;
+  transfer_began_ = true;
+  say(Level::info, "transfer", e.ended ? "the file went to the glider" : "the file is going to the glider");
+}
+
+void Pilot::on(const ListReread&) { say(Level::info, "reread", "the glider reads its lists again"); }
+
+// ---- answering ------------------------------------------------------------------------------------------------------
+
+planning::Problem Pilot::problem_now() const {
+  const auto& m = *mission_;
+  planning::Problem p;
+  p.start = {last_->fix, epoch_seconds(last_->fix_taken)};
+  p.goal = planning::PointGoal{m.goal, m.goal_radius};
+  p.glider = {glider_, m.horizontal_speed, last_->believed_speed.value_or(m.horizontal_speed), m.glide_angle,
+              m.dive_depth, m.climb_to, last_->current_correction.value_or(m.current_correction)};
+  p.schedule = {m.stint, m.first_stint, m.surface, m.surface};
+  p.coast_margin = m.min_distance_to_coast;
+  p.headings = m.headings;
+  p.cell = m.cell.value_or(Metres{0});
+  p.seed = m.seed;
+  return p;
+}
+
+void Pilot::begin_planning() {
+  ++request_;
+  planned_from_ = last_->fix;
+  PlanningRequest request;
+  request.id = request_;
+  request.surfacing = key_;
+  request.purpose = arrived_ ? PlanningRequest::Purpose::station : PlanningRequest::Purpose::goal;
+  request.problem = problem_now();
+  request.method = mission_->method;
+  request.believed_current = believed_;
+  request.slot = mission_->slot;
+  request.max_waypoints = mission_->max_waypoints;
+  request.list_radius = mission_->list_radius;
+  request.at_end = mission_->at_end;
+  request.stamp = now_.utc;
+  request.horizon_wanted = mission_->horizon.value_or(Seconds{0});
+  out_.push_back(BeginPlanning{std::move(request)});
+  set_timer(Timer::budget, later(first_heard_, mission_->budget));
+}
+
+void Pilot::on(const CandidateFound& e) {
+  if (e.candidate.request != request_ || stage_ != Stage::planning) return;
+  const auto& plan = e.candidate.plan;
+  record("plan", fmt::format("candidate {} of {}: {}", e.candidate.number, plan.method,
+                             plan.reaches_goal()
+                                 ? "arrives " + clock_text(instant_at(plan.arrival_s))
+                                 : fmt::format("comes within {:.1f} km: {}", plan.remaining.si() / 1000, plan.reason)));
+  ranked_.push_back({e.candidate, Ranked::Proof::none, std::nullopt});
+  ask_verdict();
+}
+
+void Pilot::on(const PlanningEnded& e) {
+  if (e.request != request_ || stage_ != Stage::planning) return;
+  planning_over_ = true;
+  problem_ = e.problem;
+  emit_if_due();
+}
+
+/// One verdict is asked at a time, for the best candidate that has none: the newest.
+void Pilot::ask_verdict() {
+  const auto asked = [](const Ranked& r) { return r.proof == Ranked::Proof::asked; };
+  if (std::any_of(ranked_.begin(), ranked_.end(), asked)) return;
+  for (auto r = ranked_.rbegin(); r != ranked_.rend(); ++r) {
+    if (r->proof == Ranked::Proof::accepted) return;  // a better one is proven already
+    if (r->proof != Ranked::Proof::none) continue;
+    r->proof = Ranked::Proof::asked;
+    out_.push_back(Verify{request_, r->candidate.number, dossier_for(r->candidate)});
+    return;
+  }
+}
+
+safety::Dossier Pilot::dossier_for(const Candidate& c) const {
+  const auto problem = problem_now();
+  safety::Dossier d;
+  d.file_name = c.file_name;
+  d.file_bytes = c.file_bytes;
+  d.glider_expected = glider_;
+  d.at = *last_;
+  d.current_surfacing = key_;
+  d.answers_surfacing = key_;
+  d.glider = problem.glider;
+  d.believed_current = believed_;
+  d.schedule = problem.schedule;
+  d.fix_s = problem.start.fix_s;
+  d.horizon_s = c.horizon_s;
+  d.rules.coast_margin = mission_->min_distance_to_coast;
+  d.rules.max_waypoints = mission_->max_waypoints;
+  d.rules.slot = mission_->slot;
+  d.rules.max_wpt_distance = mission_->max_wpt_distance;
+  d.promise = c.promise;
+  d.judged_s = epoch_seconds(now_.utc);
+  d.deadline_s = d.judged_s + Seconds{deadline_ - now_.tick}.count();
+  return d;
+}
+
+void Pilot::on(const Judged& e) {
+  if (e.request != request_ || stage_ != Stage::planning) return;
+  const auto ranked = std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& r) { return r.candidate.number == e.number; });
+  if (ranked == ranked_.end()) return;
+  ranked->proof = Ranked::Proof::refused;
+  if (e.verdict) {
+    auto file = safety::accept(ranked->candidate.file_name, ranked->candidate.file_bytes, *e.verdict);
+    if (file) {
+      ranked->proof = Ranked::Proof::accepted;
+      ranked->file = std::move(file).value();
+    }
+  }
+  if (ranked->proof == Ranked::Proof::accepted) {
+    record("verdict", fmt::format("candidate {} of {} accepted", e.number, ranked->candidate.plan.method));
+  } else {
+    std::string why = e.verdict ? "" : "no verdict: " + e.failure;
+    if (e.verdict)
+      for (const auto& margin : e.verdict->margins)
+        if (!margin.holds) why += (why.empty() ? "" : "; ") + margin.rule + ": " + margin.message;
+    if (why.empty()) why = "the verdict is for other bytes";
+    problem_ = why;
+    record("verdict", fmt::format("candidate {} of {} refused: {}", e.number, ranked->candidate.plan.method, why));
+    say(Level::alert, "refused-file", fmt::format("the verifier refuses the {} plan: {}", ranked->candidate.plan.method, why));
+  }
+  ask_verdict();
+  emit_if_due();
+}
+
+Pilot::Ranked* Pilot::best_proven() {
+  for (auto r = ranked_.rbegin(); r != ranked_.rend(); ++r)
+    if (r->proof == Ranked::Proof::accepted) return &*r;
+  return nullptr;
+}
+
+/// Why a proven file may not go out (yet); nothing when it may.
+std::optional<std::string> Pilot::reason_to_hold() const {
+  if (skew_) return *skew_;
+  if (mission_->emit_on_connection) return std::nullopt;
+  if (!at_surface_seen_) return "the at-surface block has not named the running mission";
+  if (!mission_named_)
+    return fmt::format("the glider runs mission {}, configured is {}", wrong_mission_, mission_->slocum_mission);
+  return std::nullopt;
+}
+
+/// Emits at the earliest of: nothing better left to try, the budget is over, 30 s before the deadline (product.md 4.6).
+void Pilot::emit_if_due() {
+  if (stage_ != Stage::planning && stage_ != Stage::proposed) return;
+  const bool last_call = now_.tick >= later(deadline_, -kEmitBeforeDeadline);
+  const bool asked = std::any_of(ranked_.begin(), ranked_.end(), [](const Ranked& r) { return r.proof == Ranked::Proof::asked; });
+  const bool nothing_better = planning_over_ && !asked;
+  if (!nothing_better && !budget_over_ && !last_call) return;
+  Ranked* best = best_proven();
+  if (best == nullptr) {
+    if (nothing_better)
+      keep("no-plan", problem_.empty() ? "no plan was found" : problem_);
+    else if (last_call)
+      keep("late", "no proven file was ready 30 s before the glider dives");
+    return;
+  }
+  if (const auto hold = reason_to_hold()) {
+    if (last_call) keep("held", *hold);
+    return;
+  }
+  if (stage_ == Stage::proposed) return;
+  const auto& plan = best->candidate.plan;
+  const std::string arrival = arrived_ ? "holding at the goal"
+                              : plan.reaches_goal()
+                                  ? fmt::format("arrives {} ({} from the fix)", clock_text(instant_at(plan.arrival_s)),
+                                                hours(Seconds{plan.arrival_s - epoch_seconds(last_->fix_taken)}))
+                                  : fmt::format("comes within {:.1f} km of the goal: {}", plan.remaining.si() / 1000, plan.reason);
+  if (mission_->approval == Approval::manual) {
+    stage_ = Stage::proposed;
+    record("proposal", fmt::format("{} by {}, {}", best->candidate.file_name, plan.method, arrival));
+    say(Level::note, "proposed", fmt::format("proposal: {} by {}, {}; approval.mode is manual, nothing is emitted",
+                                             best->candidate.file_name, plan.method, arrival));
+    return;
+  }
+  stage_ = Stage::emitting;
+  say(Level::info, "plan", fmt::format("plan by {}: {}, next surfacing expected at {}, {:.0f} s left in the window", plan.method,
+                                       arrival, place(best->candidate.promise.next_surfacing),
+                                       Seconds{deadline_ - now_.tick}.count()));
+  out_.push_back(Emit{*best->file, key_, fmt::format("{}#{}", key_, request_), deadline_, replacing_});
+}
+
+void Pilot::on(const EmissionEnded& e) {
+  if (e.surfacing != key_ || stage_ != Stage::emitting) return;
+  record("emission", e.detail);
+  using Outcome = EmissionEnded::Outcome;
+  switch (e.outcome) {
+    case Outcome::queued:
+      stage_ = Stage::queued;
+      say(Level::info, "queued", e.detail);
+      expect_next();
+      return;
+    case Outcome::foreign_file:
+      stage_ = Stage::stood_down;
+      say(Level::alert, "foreign-file", "standing down for this surfacing: " + e.detail);
+      return;
+    case Outcome::late: keep("late", e.detail); return;
+    case Outcome::aborted: keep("emission", e.detail); return;
+    case Outcome::unknown:
+      stage_ = Stage::kept;
+      say(Level::page, "emission", "it is not known whether the file went out: " + e.detail);
+      return;
+  }
+}
+
+void Pilot::on(const FolderSeen& e) {
+  if (stage_ == Stage::idle || stage_ == Stage::dived || stage_ == Stage::stood_down) return;
+  if (e.found == FolderSeen::Found::foreign) {
+    if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
+    stage_ = Stage::stood_down;
+    record("keep", "foreign file: " + e.detail);
+    say(Level::alert, "foreign-file", "standing down for this surfacing: " + e.detail);
+  } else if (e.found == FolderSeen::Found::unreadable) {
+    say(Level::alert, "folder", "the to-glider folder cannot be read: " + e.detail);
+  }
+}
+
+/// Nothing is emitted for this surfacing. The glider restarts its list at w_1, and the operator hears why.
+void Pilot::keep(const std::string& code, const std::string& why) {
+  stage_ = Stage::kept;
+  record("keep", why);
+  say(Level::alert, code, fmt::format("nothing is emitted: {}. The glider keeps its list and starts it again at its first waypoint", why));
+  expect_next();
+}
+
+// ---- watching -------------------------------------------------------------------------------------------------------
+
+void Pilot::expect_next() {
+  if (!mission_ || !last_) return;
+  expected_place_.reset();
+  if (const Ranked* best = best_proven()) expected_place_ = best->candidate.promise.next_surfacing;
+  const Seconds interval = mission_->surface + mission_->stint;
+  expected_s_ = epoch_seconds(last_->fix_taken) + interval.count();
+  const Tick expected = later(now_.tick, Seconds{*expected_s_ - epoch_seconds(now_.utc)});
+  set_timer(Timer::late_note, later(expected, 0.1 * interval));
+  set_timer(Timer::late_alert, later(expected, interval));
+  const Seconds page = std::min(Seconds{14 * 3600.0}, 2.5 * interval);
+  set_timer(Timer::late_page, later(expected, std::max(page - interval, interval + Seconds{60})));
+}
+
+void Pilot::on(const TimerFired& e) {
+  const auto kind = static_cast<std::size_t>(e.timer);
+  if (e.serial != serials_[kind]) return;
+  const auto overdue = [&] { return expected_s_ ? hours(Seconds{epoch_seconds(now_.utc) - *expected_s_}) : std::string{"?"}; };
+  switch (e.timer) {
+    case Timer::budget:
+      budget_over_ = true;
+      emit_if_due();
+      return;
+    case Timer::deadline: emit_if_due(); return;
+    case Timer::late_note:
+      late_said_ = true;
+      say(Level::note, "late", fmt::format("the call is late: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
+      return;
+    case Timer::late_alert:
+      late_said_ = true;
+      say(Level::alert, "late", fmt::format("the second call is missed: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
+      return;
+    case Timer::late_page:
+      late_said_ = true;
+      say(Level::page, "late", fmt::format("no call for {} after it was expected ({})", overdue(), clock_text(instant_at(*expected_s_))));
+      return;
+  }
+}
+
+// ---- steering the pilot ---------------------------------------------------------------------------------------------
+
+void Pilot::on(const MissionChanged& e) {
+  if (mission_sha_ == e.sha256 && mission_ && !next_mission_ && skew_ok_ == e.clock_skew_ok) return;
+  record("mission", fmt::format("{} ({}) by {}", e.mission.name, e.sha256.substr(0, 12), e.by));
+  const bool at_once = !mission_;
+  auto& mission = at_once ? mission_ : next_mission_;
+  mission = e.mission;
+  (at_once ? mission_sha_ : next_sha_) = e.sha256;
+  (at_once ? skew_ok_ : next_skew_ok_) = e.clock_skew_ok;
+  say(Level::info, "mission",
+      fmt::format("mission {}: goal {}, {:.1f} km radius, {} h stints, method {}, approval {}{}", e.mission.name, place(e.mission.goal),
+                  e.mission.goal_radius.si() / 1000, e.mission.stint.count() / 3600, e.mission.method,
+                  e.mission.approval == Approval::manual      ? "manual"
+                  : e.mission.approval == Approval::automatic ? "auto"
+                                                              : "auto-if-safe",
+                  at_once ? "" : "; in force at the next surfacing"));
+}
+
+/// After a crash: what was under way is settled. A plan is never finished from the journal; a new one is made while the
+/// window is open (trust.md 6.2).
+void Pilot::on(const Restarted& e) {
+  if (!last_ || stage_ == Stage::idle || stage_ == Stage::dived) return;
+  // Ticks of before the restart may be of another boot: the deadline is rebuilt from UTC.
+  const Seconds cap = mission_ ? mission_->window_max : Seconds{900};
+  first_heard_ = later(now_.tick, -between(last_->heard, now_.utc));
+  deadline_ = later(first_heard_, std::min(cap, last_->until_diving.value_or(cap)));
+  if (e.emission && e.emission->surfacing == key_ && e.emission->outcome != EmissionEnded::Outcome::aborted) {
+    stage_ = Stage::emitting;
+    on(*e.emission);
+    return;
+  }
+  if (stage_ == Stage::queued || stage_ == Stage::stood_down || stage_ == Stage::kept) return;
+  if (now_.tick >= later(deadline_, -kEmitBeforeDeadline)) {
+    keep("restart", "the program was restarted and the window is over");
+    return;
+  }
+  say(Level::info, "restart", "planning again after a restart");
+  set_deadline(deadline_);
+  out_.push_back(InspectFolder{});
+  planning_over_ = true;  // whatever was asked before the restart has no one left to answer it
+  plan_again();
+}
+
+// ---- saying ---------------------------------------------------------------------------------------------------------
+
+void Pilot::say(Level level, std::string code, std::string text) { out_.push_back(Say{level, std::move(code), std::move(text)}); }
+
+void Pilot::record(std::string kind, std::string text) { out_.push_back(Record{std::move(kind), key_, std::move(text)}); }
+
+void Pilot::set_timer(Timer timer, Tick at) { out_.push_back(SetTimer{timer, ++serials_[static_cast<std::size_t>(timer)], at}); }
+
+void Pilot::cancel_timer(Timer timer) {
+  ++serials_[static_cast<std::size_t>(timer)];
+  out_.push_back(CancelTimer{timer});
+}
+
+}  // namespace glidehelm::mission

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mission/event.hpp"
+#include "core/mission/learning.hpp"
+
+namespace glidehelm::mission {
+
+/// Where the answer to the current surfacing stands.
+enum class Stage {
+  idle,        ///< no surfacing is open
+  planning,    ///< candidates are being made and judged
+  proposed,    ///< approval.mode manual: a proven file waits, nothing is emitted
+  emitting,    ///< the emission is under way
+  queued,      ///< the file lies in to-glider
+  kept,        ///< nothing is emitted for this surfacing; the reason was said
+  stood_down,  ///< a human's file lies there: theirs wins
+  dived,       ///< the window is over
+};
+std::string_view word(Stage stage);
+
+/// The pilot of one glider: a value machine. `step` takes what happened and returns what to do; it never waits, reads,
+/// writes or asks the time, so that a journal of events replays to the same effects, byte for byte.
+///
+/// What it promises (product.md 4, trust.md P1–P6): at most one emission per surfacing (a recorded replacement of our
+/// own, still queued file apart); nothing is emitted unless a verifier accepted those bytes for the surfacing that is
+/// current, before the deadline, after the at-surface block named the mission (unless emit_on: connection); a human's
+/// file makes it stand down; every refusal and every `keep` says why.
+class Pilot {
+ public:
+  explicit Pilot(std::string glider);
+  Effects step(const Event& event);
+
+  // What status pages ask; all derived from the events so far.
+  [[nodiscard]] Stage stage() const { return stage_; }
+  [[nodiscard]] const std::optional<model::Surfacing>& last() const { return last_; }
+  [[nodiscard]] const std::string& surfacing_key() const { return key_; }
+  [[nodiscard]] int surfacings() const { return count_; }
+  [[nodiscard]] bool arrived() const { return arrived_; }
+  [[nodiscard]] const std::optional<Mission>& mission() const { return mission_; }
+  /// True while a planning answer, a verdict or an emission is awaited: the daemon is not quiescent.
+  [[nodiscard]] bool awaits_answer() const;
+
+ private:
+  struct Ranked {
+    Candidate candidate;
+    enum class Proof { none, asked, accepted, refused } proof{Proof::none};
+    std::optional<safety::VerifiedFile> file;
+  };
+
+  void on(const SurfacingHeard& e);
+  void on(const FixRefused& e);
+  void on(const WindowHeard& e);
+  void on(const WindowExtended& e);
+  void on(const DiveBegan& e);
+  void on(const TransferHeard& e);
+  void on(const ListReread& e);
+  void on(const CandidateFound& e);
+  void on(const PlanningEnded& e);
+  void on(const Judged& e);
+  void on(const EmissionEnded& e);
+  void on(const FolderSeen& e);
+  void on(const TimerFired& e);
+  void on(const MissionChanged& e);
+  void on(const Restarted& e);
+
+  // accepting a fix
+  [[nodiscard]] bool is_duplicate(const model::Surfacing& s) const;
+  [[nodiscard]] bool is_same_surfacing(const model::Surfacing& s) const;
+  [[nodiscard]] std::optional<model::Refusal> objection(const SurfacingHeard& e);
+  [[nodiscard]] std::optional<model::Refusal> jump(const model::Surfacing& s);
+  void take_repeat(const model::Surfacing& s);
+  [[nodiscard]] bool plan_again_for_water(const model::Surfacing& s);
+  void plan_again();
+  void open_surfacing(const model::Surfacing& s);
+  void take_later_fix(const model::Surfacing& s);
+  void note_dialog(const model::Surfacing& s);
+  void remember(const model::Surfacing& s);
+
+  // answering it
+  void begin_planning();
+  [[nodiscard]] planning::Problem problem_now() const;
+  void ask_verdict();
+  [[nodiscard]] safety::Dossier dossier_for(const Candidate& candidate) const;
+  void emit_if_due();
+  [[nodiscard]] std::optional<std::string> reason_to_hold() const;
+  void keep(const std::string& code, const std::string& why);
+  void set_deadline(Tick deadline);
+  [[nodiscard]] Ranked* best_proven();
+  void expect_next();
+  void greet(const model::Surfacing& s, std::optional<Current> measured);
+
+  // saying
+  void say(Level level, std::string code, std::string text);
+  void record(std::string kind, std::string text);
+  void set_timer(Timer timer, Tick at);
+  void cancel_timer(Timer timer);
+
+  std::string glider_;
+  std::optional<Mission> mission_, next_mission_;
+  std::string mission_sha_, next_sha_;
+  bool skew_ok_{}, next_skew_ok_{};
+
+  Moment now_{};
+  Effects out_;
+
+  // the glider as far as known
+  std::optional<model::Surfacing> last_;            ///< newest accepted fix
+  std::deque<model::Surfacing> recent_;             ///< accepted fixes of the last surfacings, for S4
+  std::optional<model::Surfacing> quarantined_;     ///< a jump that waits for a second fix to agree (S5)
+  std::optional<Instant> dived_at_;                 ///< when the dialog last said that the glider goes under
+  std::optional<Current> believed_;                 ///< measured DAC, true frame
+  FrameRotation rotation_{};
+  int count_{};                                     ///< surfacings accepted
+  bool arrived_{};
+
+  // the surfacing that is open
+  std::string key_, segment_;
+  Stage stage_{Stage::idle};
+  bool at_surface_seen_{}, mission_named_{};
+  std::string wrong_mission_;
+  Tick first_heard_{}, deadline_{};
+  bool budget_over_{}, planning_over_{};
+  std::uint64_t request_{};
+  std::vector<Ranked> ranked_;
+  std::string problem_;
+  std::optional<GeoPoint> planned_from_;
+  bool transfer_began_{}, replacing_{};
+  std::optional<std::string> skew_;
+
+  // what was promised for the next one
+  std::optional<GeoPoint> expected_place_;
+  std::optional<double> expected_s_;
+  bool late_said_{};
+
+  std::uint64_t serials_[5]{};
+};
+
+}  // namespace glidehelm::mission

@@ -1,0 +1,191 @@
+#include "core/safety/track_rules.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "core/safety/margins.hpp"
+
+namespace glidehelm::safety {
+
+namespace {
+
+constexpr double kTailSeconds = 72 * 3600.0;
+constexpr double kChartSlack = 10.0;
+
+/// True when some water within `margin` is not charted: what lies there may be land.
+bool uncharted_within(const GeoPoint& p, double margin, const chart::Chart& chart) {
+  for (int i = 0; i < 8; ++i)
+    if (!chart.is_charted(destination(p, Bearing{Radians{i * kPi / 4}}, Metres{margin}))) return true;
+  return false;
+}
+
+double coast_distance(const GeoPoint& p, double margin, const chart::Chart& chart) {
+  const double coast = chart.distance_to_coast(p).si();
+  const double clearance = chart.clearance(p).si();
+  // Something other than the shore is near: a border of areas, or of the chart itself.
+  if (chart.has_coast() && clearance < std::min(coast, margin) &&
+      (!chart.is_charted(p) || uncharted_within(p, margin, chart)))
+    return clearance;
+  return coast;
+}
+
+std::size_t first_dive(std::span<const TrackPoint> track) {
+  for (std::size_t i = 0; i < track.size(); ++i)
+    if (!track[i].drifting) return i == 0 ? 0 : i - 1;
+  return track.empty() ? 0 : track.size() - 1;
+}
+
+std::string place(const TrackPoint& p, const Dossier& d) {
+  return sentence("%.5f, %.5f in stint %d, %.1f h after the fix", p.at().lat.degrees(), p.at().lon.degrees(),
+                  p.stint + 1, (p.t_s - d.fix_s) / 3600);
+}
+
+/// The part of a flight that is judged before and after the arrival.
+Kept worst_of(const Kept& a, const Kept& b) {
+  if (a.holds != b.holds) return a.holds ? b : a;
+  return b.found < a.found ? b : a;
+}
+
+}  // namespace
+
+Kept keeps_margin(std::span<const TrackPoint> track, std::size_t first, std::size_t last, double margin, Distance kind,
+                  const chart::Chart& chart) {
+  Kept kept;
+  kept.found = chart::Chart::kHorizon;
+  kept.where = first;
+  bool outside = false;
+  double nearest_so_far = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = first; i < last; ++i) {
+    const auto& p = track[i];
+    // The raster's lower bound spares the geometry wherever neither the verdict nor the minimum can change.
+    const bool bounded =
+        chart.clearance_at_least(p.at().lat.radians(), p.at().lon.radians()) >= std::max(margin + 500.0, kept.found);
+    if (outside && bounded) continue;
+    const double d = kind == Distance::coast ? coast_distance(p.at(), margin, chart) : chart.clearance(p.at()).si();
+    if (outside || d >= margin) {
+      if (outside && margin <= 0 && kind == Distance::clearance && i > first &&
+          !chart.segment_is_clear(track[i - 1].lat, track[i - 1].lon, p.lat, p.lon, 0.0))
+        return {false, std::min(d, 0.0), i};
+      if (d < kept.found) kept = {true, d, i};
+      outside = true;
+      if (d < margin) return {false, d, i};
+    } else {
+      if (d < nearest_so_far - kChartSlack) return {false, d, i};
+      nearest_so_far = std::max(nearest_so_far, d);
+      kept = {true, d, i};
+      if (i + 1 < last) kept.found = chart::Chart::kHorizon;
+    }
+  }
+  return kept;
+}
+
+Margin judge_flight(const Evidence& e) {
+  if (!e.flight) return not_judged("the list was not flown");
+  const auto& flight = *e.flight;
+  const auto& end = flight.track.back();
+  Margin m;
+  m.found = (end.t_s - e.dossier.fix_s) / 3600;
+  m.limit = kNoNumber;
+  m.unit = "h";
+  const bool arrived = flight.arrival_s.has_value();
+  switch (flight.end) {
+    case FlightEnd::horizon:
+    case FlightEnd::stints:
+    case FlightEnd::list_finished:
+      m.holds = true;
+      break;
+    case FlightEnd::outside_time:
+      m.holds = arrived || flight.stints.size() >= 2;
+      break;
+    case FlightEnd::outside_area:
+      m.holds = arrived;
+      break;
+    // With a coastline the model's mask is no land of its own.
+    case FlightEnd::no_data:
+      m.holds = arrived;
+      break;
+    case FlightEnd::land:
+      m.holds = arrived && e.chart.has_coast();
+      break;
+    case FlightEnd::not_finite:
+      m.holds = false;
+      break;
+  }
+  if (flight.stints.empty()) m.holds = false;
+  m.message = sentence("flown for %zu stints to %s; ended by: ", flight.stints.size(), place(end, e.dossier).c_str());
+  m.message += word(flight.end);
+  return m;
+}
+
+Margin judge_land(const Evidence& e) {
+  if (!e.flight) return not_judged("the list was not flown");
+  const std::span<const TrackPoint> track{e.flight->track};
+  const std::size_t arrival = e.flight->arrival_index, dive = first_dive(track);
+  const double margin = e.dossier.rules.coast_margin.si();
+  const auto before = keeps_margin(track, dive, std::min(arrival, track.size()), margin, Distance::coast, e.chart);
+  const auto after = keeps_margin(track, std::max(arrival, dive), track.size(), 0.0, Distance::coast, e.chart);
+  Margin m;
+  m.holds = before.holds && after.holds && after.found > 0;
+  const bool shown_after = before.holds && !m.holds;
+  const auto& shown = shown_after ? after : before;
+  m.found = shown.found;
+  m.limit = shown_after ? 0.0 : margin;
+  m.unit = "m";
+  m.message = sentence("%.0f m from the coast at %s, allowed from %.0f m", m.found,
+                       place(track[shown.where < track.size() ? shown.where : 0], e.dossier).c_str(), m.limit);
+  if (!e.chart.has_coast()) m.message = "no coastline is given: only the forecast's own land is judged";
+  return m;
+}
+
+Margin judge_areas(const Evidence& e) {
+  if (!e.flight) return not_judged("the list was not flown");
+  const std::span<const TrackPoint> track{e.flight->track};
+  const auto kept = keeps_margin(track, first_dive(track), std::min(e.flight->arrival_index, track.size()), 0.0,
+                                 Distance::clearance, e.chart);
+  Margin m;
+  m.holds = kept.holds;
+  m.found = kept.found;
+  m.limit = 0;
+  m.unit = "m";
+  m.message = sentence("%.0f m inside what is allowed at %s", kept.found,
+                       place(track[kept.where < track.size() ? kept.where : 0], e.dossier).c_str());
+  return m;
+}
+
+Margin judge_tail(const Evidence& e) {
+  if (!e.flight || !e.list) return not_judged("the list was not flown");
+  Margin m;
+  m.holds = true;
+  m.found = chart::Chart::kHorizon;
+  m.limit = 0;
+  m.unit = "m";
+  m.message = "with the stint 5 % shorter or longer and the speed 10 % lower or 5 % higher";
+  for (const double length : {0.95, 1.05}) {
+    for (const double speed : {0.90, 1.05}) {
+      FlightOrder order = order_for(e.dossier, *e.list);
+      order.schedule.stint *= length;
+      order.schedule.first_stint *= length;
+      order.glider.horizontal_speed = speed * order.glider.horizontal_speed;
+      order.horizon_s = std::min(order.horizon_s, order.fix_s + kTailSeconds);
+      const Flight flight = fly(order, e.full);
+      const std::span<const TrackPoint> track{flight.track};
+      const std::size_t dive = first_dive(track), arrival = std::min(flight.arrival_index, track.size());
+      const auto kept =
+          worst_of(keeps_margin(track, dive, arrival, 0.0, Distance::clearance, e.chart),
+                   keeps_margin(track, std::max(dive, arrival), track.size(), 0.0, Distance::coast, e.chart));
+      const bool aground = flight.end == FlightEnd::land && !(flight.arrival_s && e.chart.has_coast());
+      if (kept.found < m.found) m.found = kept.found;
+      if (m.holds && (!kept.holds || aground)) {
+        m.holds = false;
+        const auto& where = aground ? track.back() : track[kept.where];
+        m.message = sentence("touches land or a forbidden area with stint length %+.0f %% and speed %+.0f %%: %s",
+                             100 * (length - 1), 100 * (speed - 1), place(where, e.dossier).c_str());
+      }
+    }
+  }
+  return m;
+}
+
+}  // namespace glidehelm::safety

@@ -61,6 +61,11 @@ struct Surfacing {
   friend bool operator==(const Surfacing&, const Surfacing&) = default;
 };
 
+/// S4: two prints of one fix. The printed texts are equal and the times of the fix differ by less than 2 s on the
+/// glider's clock (`Curr Time` has whole seconds, so the age makes the same fix come out up to a second apart).
+/// Compared by difference, never by rounding into bins.
+bool same_fix(const Surfacing& a, const Surfacing& b);
+
 /// A fix that is not used: which rule of slocum.md refused it, and why in words a pilot reads.
 struct Refusal {
   std::string rule;    ///< "S2", "S3", "S4", "S5", "S6", …

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulator/dockserver/to_glider.hpp"
+#include "simulator/glider/behaviours.hpp"
+
+namespace glidehelm::simulator {
+
+/// The time line of a call and of the dockserver's script, in seconds.
+struct CallSetup {
+  double call_after{45};        ///< from the last fix to the connection block: the age of the fix when it is first read
+  double at_surface_after{15};  ///< from the connection block to the at-surface block
+  double reprint_every{60};     ///< printout_cycle_time
+  double dockzr_after{120};     ///< from the connection block to the script's `!dockzr *`
+  double transfer_overhead{20};  ///< of each file …
+  double bytes_per_s{100};       ///< … and its speed
+  bool reread_always{true};      ///< Ctrl-F at every call, as scripts do; false: only after a goto file was sent
+  bool resume_at_once{false};    ///< Ctrl-R as soon as the script is through, not at the end of the scheduled interval
+  friend bool operator==(const CallSetup&, const CallSetup&) = default;
+};
+
+/// What goes wrong with one call.
+struct CallFaults {
+  bool lost{};                 ///< no call at all: no byte, no file, no Ctrl-F
+  bool not_taken{};            ///< the script does not run: files stay where they are
+  bool no_connection_block{};  ///< the first block is lost; only at-surface blocks are read
+  bool redial{};               ///< the link drops after the at-surface block; the glider calls again
+  friend bool operator==(const CallFaults&, const CallFaults&) = default;
+};
+
+/// What came over the line: bytes, or the link fell and what follows comes on a new connection.
+struct LineEvent {
+  enum class Kind { bytes, dropped } kind{};
+  std::string bytes;
+  friend bool operator==(const LineEvent&, const LineEvent&) = default;
+};
+
+/// What a call led to.
+struct CallOutcome {
+  std::vector<std::string> sent;        ///< names of all files that reached the glider
+  std::optional<OfferedFile> list;      ///< the goto list among them, when it is the one the mission reads
+  bool reread{};                        ///< Ctrl-F was pressed
+  std::optional<BehaviourError> error;  ///< the list that was read was bad: the mission is over
+  std::string note;                     ///< why no list was taken; empty when one was
+};
+
+/// One call of a glider on the surface, from the connection block to the dive, and the script that answers it:
+/// at `dockzr_after` it sends what lies in `to-glider` (a file that arrives later waits for the next surfacing), then
+/// presses Ctrl-F, and Ctrl-R at the end of the scheduled surface interval (or at once). Nobody extends the window.
+///
+/// On its files the glider keeps the last `goto_lNN.ma` that it was sent; Ctrl-F reads that one, or the list that it
+/// started with when none came yet.
+class Call {
+ public:
+  /// Glider and folder must outlive the call. `on_board` are the bytes of the glider's goto list file; empty while it
+  /// flies the list it started with.
+  Call(const CallSetup& setup, CallFaults faults, Glider& glider, ToGlider& folder, std::string& on_board);
+
+  /// Epoch second of what happens next; none when only the dive is left.
+  [[nodiscard]] std::optional<double> next_s() const;
+  /// Lets it happen.
+  std::vector<LineEvent> step();
+  [[nodiscard]] double dive_s() const { return dive_s_; }
+  [[nodiscard]] const CallOutcome& outcome() const { return outcome_; }
+  [[nodiscard]] const CallFaults& faults() const { return faults_; }
+
+ private:
+  enum class What { connect, at_surface, drop, reprint, dockzr, sent, reread, resume };
+  struct Due {
+    double at_s{};
+    What what{};
+  };
+  void plan(double at_s, What what);
+  void forget(What what);
+  std::string dockzr(double now_s);
+  std::string sent(double now_s);
+  std::string reread(double now_s);
+  [[nodiscard]] double left(double now_s) const { return resume_s_ - now_s; }
+
+  CallSetup setup_;
+  CallFaults faults_;
+  Glider* glider_;
+  ToGlider* folder_;
+  std::string* on_board_;
+  std::vector<Due> due_;
+  std::vector<OfferedFile> sending_;
+  bool busy_{};
+  double dive_s_{}, resume_s_{};
+  CallOutcome outcome_;
+};
+
+}  // namespace glidehelm::simulator

@@ -1,0 +1,161 @@
+#include "core/safety/track_rules.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/core/safety/sample_dossier.hpp"
+
+using namespace glidehelm;
+using namespace glidehelm::safety;
+using test::Answer;
+using test::Case;
+using test::current;
+using test::good_case;
+using test::margin;
+
+namespace {
+
+/// A rectangle from (east, north) to (east, north), metres from a point.
+chart::Area box(const GeoPoint& from, double east0, double north0, double east1, double north1) {
+  chart::Area area{"box", {}};
+  for (const auto& [e, n] : std::vector<std::pair<double, double>>{{east0, north0}, {east1, north0}, {east1, north1}, {east0, north1}})
+    area.vertices.push_back(destination(from, Bearing{Radians{std::atan2(e, n)}}, Metres{std::hypot(e, n)}));
+  return area;
+}
+
+test::FormulaField stopping(const Case& c, ocean::NoCurrent reason, double when_s) {
+  return {[=](GeoPoint, double, double t) -> Answer {
+            if (t > when_s) return unexpected(reason);
+            return ocean::Sample{current(0.05, 0.02), false};
+          },
+          c.field.box};
+}
+
+/// A straight track eastwards from `from`, a point every 100 m.
+std::vector<TrackPoint> eastwards(const GeoPoint& from, double metres) {
+  std::vector<TrackPoint> track;
+  for (double x = 0; x <= metres; x += 100) {
+    const auto p = destination(from, Bearing{degrees(90)}, Metres{x});
+    track.push_back({p.lat.radians(), p.lon.radians(), x, 0, false});
+  }
+  return track;
+}
+
+}  // namespace
+
+TEST_CASE("rule 2 flight: before the arrival only horizon, stints and the end of a waiting list end a flight well") {
+  auto c = good_case();
+  const double arrival = *c.dossier.promise.list_arrival_s;
+  for (const auto reason : {ocean::NoCurrent::no_data, ocean::NoCurrent::outside_area, ocean::NoCurrent::below_bottom}) {
+    c.field = stopping(c, reason, arrival + 100);
+    CHECK(c.failing() == "");
+    c.field = stopping(c, reason, arrival - 100);
+    c.promise_as_flown();
+    CHECK(c.failing() == "2 flight");
+    c.dossier.promise.list_arrival_s = arrival;
+  }
+}
+
+TEST_CASE("rule 2 flight: the forecast's own land refuses before and, without a coastline, after the arrival") {
+  auto c = good_case();
+  const double arrival = *c.dossier.promise.list_arrival_s;
+  c.field = stopping(c, ocean::NoCurrent::land, arrival + 3600);
+  CHECK(c.failing() == "2 flight, 2 tail");
+  c.field = stopping(c, ocean::NoCurrent::land, arrival - 3600);
+  c.promise_as_flown();
+  CHECK(c.failing() == "2 flight, 2 tail");
+}
+
+TEST_CASE("rule 2 flight: the forecast may end after the second surfacing, not before") {
+  auto c = good_case();
+  const double second = c.dossier.fix_s + c.dossier.schedule.surfacing_time(1).count();
+  c.field = stopping(c, ocean::NoCurrent::outside_time, second + 60);
+  c.promise_as_flown();
+  REQUIRE_FALSE(c.dossier.promise.list_arrival_s.has_value());
+  CHECK(c.failing() == "");
+  c.field = stopping(c, ocean::NoCurrent::outside_time, second - 60);
+  CHECK(c.failing() == "2 flight");
+}
+
+TEST_CASE("rule 2 areas: the re-flown track keeps out, not only its waypoints") {
+  auto c = good_case();
+  const auto fix = c.dossier.at.fix;
+  // The way leads north-east; at 3 km east it is 3 km north. A strip 20 m thin lies across it, then ends before it.
+  c.sources.keep_out = {box(fix, 2500, 2000, 2520, 4000)};
+  CHECK(c.failing() == "2 areas, 2 tail");
+  c.sources.keep_out = {box(fix, 2500, 2600, 2520, 4000)};
+  CHECK(c.failing() == "");
+  const auto m = margin(c.judged(), "2 areas");
+  CHECK(m.found > 0);
+  CHECK(m.found < 150);
+}
+
+TEST_CASE("rule 2 areas: after the arrival in the goal radius only land counts") {
+  auto c = good_case();
+  const auto goal = c.dossier.promise.goal;
+  // 1000 m short of the goal: inside the radius of 2000 m
+  c.sources.keep_out = {box(goal, -800, -900, -600, -500)};
+  CHECK(c.failing() == "");
+  c.dossier.promise.goal_radius = Metres{300};
+  c.promise_as_flown();
+  CHECK(c.failing() == "2 areas, 2 tail");
+}
+
+TEST_CASE("rule 2 areas: a start inside a forbidden area may only leave it") {
+  auto c = good_case();
+  const auto fix = c.dossier.at.fix;
+  c.sources.keep_out = {box(fix, -3000, -3000, 500, 500)};
+  CHECK(c.failing() == "");
+  // inside it towards the middle first: deeper before it gets out
+  c.sources.keep_out = {box(fix, -300, -300, 3000, 3000)};
+  CHECK(c.failing() == "2 areas, 2 tail");
+}
+
+TEST_CASE("rule 2 tail: a track that keeps clear only at the planned speed is refused") {
+  auto c = good_case();
+  // Correction 0 and a cross current: the track bows to the south-east by what a stint drifts.
+  c.dossier.glider.current_correction = 0;
+  c.dossier.believed_current.reset();
+  c.field = test::uniform(0.05, -0.05);
+  c.write({c.dossier.promise.goal}, 400);
+  REQUIRE(c.failing() == "");
+  const auto list = read_list(c.dossier.file_bytes, 8);
+  const auto& surfaced = fly(order_for(c.dossier, *list), c.field).stints[0].surfaced;
+  const auto across = [&](double off) {
+    // a strip along the way beyond the first surfacing, `off` metres to the side that the current carries to
+    const auto corner = destination(surfaced, Bearing{degrees(135)}, Metres{off});
+    chart::Area strip{"strip", {}};
+    for (const auto& [along, aside] : std::vector<std::pair<double, double>>{{-1500, 0}, {1500, 0}, {1500, 300}, {-1500, 300}})
+      strip.vertices.push_back(destination(destination(corner, Bearing{degrees(45)}, Metres{along}), Bearing{degrees(135)}, Metres{aside}));
+    return strip;
+  };
+  // The longest variant drifts 5 % longer, 51 m of 1018 m; the drift of 15 min after it adds 64 m to both.
+  c.sources.keep_out = {across(150)};
+  CHECK(c.failing() == "");
+  c.sources.keep_out = {across(75)};
+  CHECK(c.failing() == "2 tail");
+}
+
+TEST_CASE("a margin is kept from where the track leaves it; before, the distance may only grow") {
+  const auto start = geo_point(20, 10);
+  const auto track = eastwards(start, 5000);
+  const auto keeps = [&](const chart::Area& out, double limit) {
+    const chart::Chart chart{{nullptr, {}, {out}}};
+    return keeps_margin(track, 0, track.size(), limit, Distance::clearance, chart);
+  };
+  // abeam of the track: 1000 m off at its nearest
+  CHECK(keeps(box(start, 2000, 1000, 3000, 2000), 999).holds);
+  CHECK(keeps(box(start, 2000, 1000, 3000, 2000), 999).found == Approx(1000).margin(3));
+  const auto broken = keeps(box(start, 2000, 1000, 3000, 2000), 1005);
+  CHECK_FALSE(broken.holds);
+  CHECK(broken.where >= 19);
+  CHECK(broken.where <= 21);
+  // behind the start: 500 m and growing
+  CHECK(keeps(box(start, -2000, -1000, -500, 1000), 1500).holds);
+  // ahead of a start inside the margin: shrinking
+  CHECK_FALSE(keeps(box(start, 1000, 500, 3000, 2000), 1500).holds);
+  // never outside, but growing all the time
+  CHECK(keeps(box(start, -2000, -1000, -500, 1000), 50'000).holds);
+  // an empty range keeps everything
+  const chart::Chart chart{{nullptr, {}, {box(start, -100, -100, 100, 100)}}};
+  CHECK(keeps_margin(track, 3, 3, 100, Distance::clearance, chart).holds);
+}

@@ -80,6 +80,7 @@ struct Mission {
 
   std::string coast_file;                      ///< safety.coast; empty: the model's mask, with a warning
   Metres min_distance_to_coast{2000};          ///< safety.min_distance_to_coast_m
+  Metres depth_margin{20};                     ///< safety.depth_margin_m: under each yo; not judged before bathymetry is read
   std::vector<chart::Area> keep_in, keep_out;  ///< safety.keep_in, safety.keep_out
   std::optional<Metres> max_wpt_distance;      ///< safety.max_wpt_distance_m: the abend limit of the glider's mission
 

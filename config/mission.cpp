@@ -1,0 +1,269 @@
+#include "config/mission.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "config/areas.hpp"
+#include "config/currents.hpp"
+#include "config/yaml_reader/schema.hpp"
+
+namespace glidehelm::config {
+
+namespace {
+
+using mission::Approval;
+using mission::Mission;
+
+constexpr double kHour = 3600.0, kMinute = 60.0, kKilometre = 1000.0, kDegree = kPi / 180.0;
+constexpr double kShortestStint_h = 0.1, kLongestStint_h = 72.0;
+
+/// A mission as its file says it, before what depends on several keys is worked out.
+struct Draft : Mission {
+  std::optional<double> goal_lat, goal_lon, start_lat, start_lon;  ///< degrees
+  std::optional<Seconds> stint_given, first_stint_given;
+  std::optional<Metres> min_water_depth;
+  std::vector<CurrentsItem> fields;
+  AreasDraft inside, outside;
+};
+
+Range from_to(double low, double high) {
+  Range range;
+  range.low = low;
+  range.high = high;
+  return range;
+}
+Range above(double low, double high) {
+  Range range = from_to(low, high);
+  range.low_open = true;
+  return range;
+}
+
+bool matches_next(std::string_view text) { return text.substr(0, 5) == "next " && kName.matches(text.substr(5)); }
+bool matches_mi(std::string_view text) {
+  return text.size() > 3 && text.size() <= 64 && text.substr(text.size() - 3) == ".mi" &&
+         std::all_of(text.begin(), text.end() - 3,
+                     [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-'; });
+}
+const Pattern kNext{"^next [a-z0-9][a-z0-9_-]{0,31}$", "`next NAME`", matches_next};
+const Pattern kMi{"^[a-z0-9_-]{1,61}\\.mi$", "a name of a–z, 0–9, _ and - that ends in .mi", matches_mi};
+
+Fields<Draft> goal_fields() {
+  Fields<Draft> f;
+  f.latitude({"lat_deg", "latitude of the goal, south negative", true}, &Draft::goal_lat);
+  f.longitude({"lon_deg", "longitude of the goal, west negative", true}, &Draft::goal_lon);
+  f.number({"radius_m", "the mission has arrived within this distance"}, &Draft::goal_radius, 1, from_to(10, 200'000));
+  return f;
+}
+
+Fields<Draft> start_fields() {
+  Fields<Draft> f;
+  f.latitude({"lat_deg", "latitude of the start", false, "the fix"}, &Draft::start_lat);
+  f.longitude({"lon_deg", "longitude of the start", false, "the fix"}, &Draft::start_lon);
+  f.time({"time", "time of the start", false, "the time of the fix"}, &Draft::start_time);
+  return f;
+}
+
+Fields<Draft> vehicle_fields() {
+  Fields<Draft> f;
+  f.number({"horizontal_speed_m_per_s", "speed through water, horizontal part: U·cos(glide angle)"}, &Draft::horizontal_speed, 1, above(0, 2));
+  f.number({"glide_angle_deg", "angle of the path below the horizon"}, &Draft::glide_angle, kDegree, from_to(5, 60));
+  f.number({"dive_depth_m", "lower turning depth of the yo"}, &Draft::dive_depth, 1, above(0, 1500));
+  f.number({"climb_to_m", "upper turning depth of the yo; above `dive_depth_m`"}, &Draft::climb_to, 1, from_to(0, 1500));
+  f.whole({"current_correction", "`u_use_current_correction` of the glider: 0 steers without currents, 1 with the last measured one"},
+          &Draft::current_correction, from_to(0, 1));
+  f.maybe_number({"local_frame_rotation_deg", "rotation of the glider's local frame against east and north", false, "learned; 0 until then"},
+                 &Draft::frame_rotation, kDegree, from_to(-180, 180));
+  return f;
+}
+
+Fields<Draft> schedule_fields() {
+  Fields<Draft> f;
+  f.maybe_number({"stint_h", "time under water between two surfacings; not together with `half_cycles`", false, "4, or what `half_cycles` gives"},
+                 &Draft::stint_given, kHour, from_to(kShortestStint_h, kLongestStint_h));
+  f.number({"surface_min", "time at the surface between two stints"}, &Draft::surface, kMinute, from_to(0, 240));
+  f.maybe_number({"first_stint_h", "time under water of the first stint"}, &Draft::first_stint_given, kHour,
+                 from_to(kShortestStint_h, kLongestStint_h), "same");
+  f.maybe_whole({"half_cycles", "dives and climbs of the yo in one stint, instead of `stint_h`", false, "none"}, &Draft::half_cycles, from_to(1, 1000));
+  return f;
+}
+
+Fields<Draft> planning_fields() {
+  Fields<Draft> f;
+  const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"}, {"cts-astar", "cts-astar"}, {"best", "best"}};
+  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
+         {"astar", "abs-cts-astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization", "iterative-optimization", "zermelo"});
+  f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
+  f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"}, &Draft::cell, kKilometre,
+                 above(0, 1000), "auto");
+  f.number({"budget_s", "time after the fix at which the best plan so far goes out"}, &Draft::budget, 1, above(0, 900));
+  f.maybe_number({"horizon_h", "longest travel time looked at; `auto`: three times that through still water"}, &Draft::horizon, kHour,
+                 above(0, 8784), "auto");
+  f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
+  return f;
+}
+
+void add_areas(Fields<Draft>& f, const char* key, const char* meaning, AreasDraft Draft::*member) {
+  f.custom({key, meaning}, areas_shape(), "[]", [member](const At& at, Draft& d) { read_areas(at, d.*member); },
+           [member, key](const Draft& d, const std::string& path, Effective& out) { print_areas(d.*member, path, key, out); });
+}
+
+Fields<Draft> safety_fields() {
+  Fields<Draft> f;
+  f.text({"coast", "coast file, cut with `glidehelm coast`", false, "that of the daemon file, else the land of the forecast, with a warning"},
+         &Draft::coast_file);
+  f.number({"min_distance_to_coast_m", "distance that the track keeps from the coast and from the border of every area"},
+           &Draft::min_distance_to_coast, 1, from_to(0, 50'000));
+  f.maybe_number({"min_water_depth_m", "least depth of water; needs bathymetry, which this version does not read", false, "none"},
+                 &Draft::min_water_depth, 1, from_to(0, 11'000));
+  f.number({"depth_margin_m", "water under the yo; judged once bathymetry is read, not in this version"}, &Draft::depth_margin, 1, from_to(0, 1000));
+  add_areas(f, "keep_in", "the glider stays inside one of these polygons; none: everywhere", &Draft::inside);
+  add_areas(f, "keep_out", "the glider stays outside all of these polygons", &Draft::outside);
+  f.maybe_number({"max_wpt_distance_m", "`max_wpt_distance` of the glider's mission: a waypoint beyond aborts it; legs stay below 0.9 of it", false, "none"},
+                 &Draft::max_wpt_distance, 1, above(0, 1e7));
+  return f;
+}
+
+Fields<Draft> list_fields() {
+  using model::AtEnd;
+  Fields<Draft> f;
+  f.whole({"slot", "NN of `goto_lNN.ma`"}, &Draft::slot, from_to(0, 99));
+  f.whole({"max_waypoints", "longest list that the glider takes"}, &Draft::max_waypoints, from_to(1, 8));
+  f.maybe_number({"radius_m", "distance at which a waypoint counts as reached; `auto`: 10 % of the median leg"}, &Draft::list_radius, 1,
+                 from_to(10, 100'000), "auto");
+  f.word({"at_end", "after the last waypoint: back to the first, or wait for the next file"}, &Draft::at_end,
+         std::vector<std::pair<std::string, AtEnd>>{{"loop", AtEnd::loop}, {"wait", AtEnd::wait}});
+  return f;
+}
+
+Fields<Draft> window_fields() {
+  Fields<Draft> f;
+  f.number({"max_min", "longest time from the fix to the dive that is counted on, whatever the dialog says"}, &Draft::window_max, kMinute, above(0, 120));
+  f.number({"dockzr_after_s", "time from the call to the moment at which the dockserver's script sends files"}, &Draft::dockzr_after, 1, from_to(0, 900));
+  f.word({"emit_on", "the file goes out once the at-surface block has named the mission, or already on the connection block"},
+         &Draft::emit_on_connection, std::vector<std::pair<std::string, bool>>{{"at_surface", false}, {"connection", true}});
+  return f;
+}
+
+const Fields<Draft>& fields() {
+  static const Fields<Draft> kFields = [] {
+    Fields<Draft> approval;
+    approval.word({"mode", "`manual`: propose, emit nothing; `auto-if-safe`: emit what the verifier accepts if nothing is unusual; `auto`: emit what the verifier accepts"},
+                  &Draft::approval,
+                  std::vector<std::pair<std::string, Approval>>{
+                      {"manual", Approval::manual}, {"auto-if-safe", Approval::auto_if_safe}, {"auto", Approval::automatic}});
+    Fields<Draft> f;
+    f.constant({"schema", "what this file is", true}, kMissionSchema);
+    f.text({"name", "name of the mission, in logs and for `after_goal`", true}, &Draft::name, kName);
+    f.text({"glider", "glider that flies it, as in the daemon file", true}, &Draft::glider, kName);
+    f.text({"glider_mission", "mission that must run on the glider; another one is not steered", false, "any"}, &Draft::slocum_mission, kMi);
+    f.section({"goal", "where to", true}, goal_fields());
+    f.section({"start", "where from, for `plan` and `rehearse`; in service the fix decides"}, start_fields());
+    f.section({"vehicle", "the glider as it is expected to fly"}, vehicle_fields());
+    f.section({"schedule", "when it dives and surfaces"}, schedule_fields());
+    f.custom({"currents", "what the water does; a list adds fields", true}, currents_shape(), "",
+             [](const At& at, Draft& d) { read_currents(at, d.fields); },
+             [](const Draft& d, const std::string& path, Effective& out) { print_currents(d.fields, path, out); });
+    f.section({"planning", "how the way is found"}, planning_fields());
+    f.section({"safety", "what the verifier holds every file against"}, safety_fields());
+    f.section({"list", "the waypoint file"}, list_fields());
+    f.section({"window", "the time at the surface"}, window_fields());
+    f.section({"approval", "who lets a file out"}, approval);
+    f.text({"after_goal", "`next NAME`: that mission takes over at the goal", false, "the glider stays at the goal"}, &Draft::after_goal, kNext);
+    return f;
+  }();
+  return kFields;
+}
+
+void check_positions(const Draft& d, Reading& reading) {
+  if (d.goal_lat && d.goal_lon && *d.goal_lat == 0 && *d.goal_lon == 0)
+    reading.complain("goal", "latitude 0, longitude 0 is no goal but a position that was never set");
+  if (d.start_lat && !d.start_lon) reading.complain("start.lon_deg", "missing; start.lat_deg is set");
+  if (d.start_lon && !d.start_lat) reading.complain("start.lat_deg", "missing; start.lon_deg is set");
+}
+
+void check_vehicle(const Draft& d, Reading& reading) {
+  if (d.climb_to >= d.dive_depth)
+    reading.complain("vehicle.climb_to_m", "not above the dive depth", yaml_number(d.climb_to.si()),
+                     "less than dive_depth_m (" + yaml_number(d.dive_depth.si()) + " m)");
+}
+
+void check_schedule(const Draft& d, Reading& reading) {
+  if (!d.half_cycles) return;
+  if (d.stint_given) {
+    reading.complain("schedule.half_cycles", "both half_cycles and stint_h", {}, "one of the two");
+    return;
+  }
+  if (d.climb_to >= d.dive_depth) return;  // reported; the stint would be nonsense
+  const double hours = stint_of_half_cycles(*d.half_cycles, d).count() / kHour;
+  if (!from_to(kShortestStint_h, kLongestStint_h).contains(hours))
+    reading.complain("schedule.half_cycles", "gives a stint of " + yaml_number(std::round(hours * 100) / 100) + " h", {},
+                     "a stint of " + from_to(kShortestStint_h, kLongestStint_h).text() + " h");
+}
+
+void check_safety(const Draft& d, Reading& reading) {
+  if (d.min_water_depth)
+    reading.complain("safety.min_water_depth_m", "depth limits need bathymetry, which this version does not read; leave the key out");
+}
+
+/// Works out what depends on several keys. Only for a draft without error.
+void resolve(Draft& d, const std::string& file) {
+  d.goal = GeoPoint::from_degrees(*d.goal_lat, *d.goal_lon).value();
+  if (d.start_lat && d.start_lon) d.start = GeoPoint::from_degrees(*d.start_lat, *d.start_lon).value();
+  if (d.half_cycles)
+    d.stint = stint_of_half_cycles(*d.half_cycles, d);
+  else
+    d.stint_given = d.stint = d.stint_given.value_or(Mission{}.stint);
+  d.first_stint = d.first_stint_given.value_or(d.stint);
+  d.currents = resolve_currents(d.fields);
+  d.coast_file = path_beside(file, d.coast_file);
+  d.keep_in = d.inside.areas;
+  d.keep_out = d.outside.areas;
+}
+
+}  // namespace
+
+Seconds stint_of_half_cycles(int half_cycles, const Mission& m) {
+  // Down from the surface, the inner legs, and up to the surface from where the last leg ends.
+  const Metres last = half_cycles % 2 == 0 ? m.climb_to : m.dive_depth;
+  const Metres vertical = m.dive_depth + (half_cycles - 1) * (m.dive_depth - m.climb_to) + last;
+  return vertical / (m.horizontal_speed * std::tan(m.glide_angle.si()));
+}
+
+Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file, const LoadFile& load) {
+  auto document = read_yaml(text, file);
+  Reading reading{file};
+  for (auto& error : document.errors) reading.problems.add(std::move(error));
+  Draft draft;
+  if (document.readable) {
+    const At root{document.root, nullptr, "", reading};
+    reading.places[""] = document.root.place;
+    if (expect_map(root)) {
+      fields().read(root, draft);
+      check_positions(draft, reading);
+      check_vehicle(draft, reading);
+      check_schedule(draft, reading);
+      check_safety(draft, reading);
+      load_areas(draft.inside, load, "safety.keep_in", reading);
+      load_areas(draft.outside, load, "safety.keep_out", reading);
+    }
+  }
+  if (!reading.problems.empty()) return unexpected(reading.problems.sorted());
+  resolve(draft, file);
+  Effective effective{&reading};
+  fields().print(draft, "", effective);
+  return MissionFile{static_cast<const Mission&>(draft), effective.text()};
+}
+
+Expected<Mission, std::vector<ConfigError>> read_mission(std::string_view text, const std::string& file, const LoadFile& load) {
+  auto result = read_mission_file(text, file, load);
+  if (!result) return unexpected(std::vector<ConfigError>{result.error()});
+  return std::move(result->mission);
+}
+
+Shape mission_shape() { return fields().shape(); }
+
+std::string mission_schema() { return json_schema(mission_shape(), kMissionSchema, "Glidehelm mission"); }
+
+}  // namespace glidehelm::config

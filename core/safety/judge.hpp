@@ -68,7 +68,12 @@ struct Margin {
   double found{}, limit{};  ///< in `unit`; NaN when the rule has no number
   std::string unit;
   std::string message;  ///< what, where, what is allowed
-  friend bool operator==(const Margin&, const Margin&) = default;
+  /// Two absent numbers are the same: a verdict equals its replay.
+  friend bool operator==(const Margin& a, const Margin& b) {
+    const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
+    return a.rule == b.rule && a.holds == b.holds && same(a.found, b.found) && same(a.limit, b.limit) &&
+           a.unit == b.unit && a.message == b.message;
+  }
 };
 
 struct Verdict {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kTailSeconds = 72 * 3600.0;
 constexpr double kChartSlack = 10.0;
+constexpr double kLongestStep = 350.0;
 
 /// True when some water within `margin` is not charted: what lies there may be land.
 bool uncharted_within(const GeoPoint& p, double margin, const chart::Chart& chart) {
@@ -52,33 +53,30 @@ Kept worst_of(const Kept& a, const Kept& b) {
 
 Kept keeps_margin(std::span<const TrackPoint> track, std::size_t first, std::size_t last, double margin, Distance kind,
                   const chart::Chart& chart) {
-  Kept kept;
-  kept.found = chart::Chart::kHorizon;
-  kept.where = first;
+  Kept kept{true, chart::Chart::kHorizon, first};
+  Kept inside = kept;
   bool outside = false;
-  double nearest_so_far = -std::numeric_limits<double>::infinity();
+  double farthest = -std::numeric_limits<double>::infinity();
   for (std::size_t i = first; i < last; ++i) {
     const auto& p = track[i];
     // The raster's lower bound spares the geometry wherever neither the verdict nor the minimum can change.
-    const bool bounded =
-        chart.clearance_at_least(p.at().lat.radians(), p.at().lon.radians()) >= std::max(margin + 500.0, kept.found);
-    if (outside && bounded) continue;
+    if (outside && chart.clearance_at_least(p.at().lat.radians(), p.at().lon.radians()) >=
+                       std::max(margin + kLongestStep, kept.found))
+      continue;
     const double d = kind == Distance::coast ? coast_distance(p.at(), margin, chart) : chart.clearance(p.at()).si();
-    if (outside || d >= margin) {
-      if (outside && margin <= 0 && kind == Distance::clearance && i > first &&
-          !chart.segment_is_clear(track[i - 1].lat, track[i - 1].lon, p.lat, p.lon, 0.0))
-        return {false, std::min(d, 0.0), i};
-      if (d < kept.found) kept = {true, d, i};
-      outside = true;
-      if (d < margin) return {false, d, i};
-    } else {
-      if (d < nearest_so_far - kChartSlack) return {false, d, i};
-      nearest_so_far = std::max(nearest_so_far, d);
-      kept = {true, d, i};
-      if (i + 1 < last) kept.found = chart::Chart::kHorizon;
+    if (!outside && d < margin) {
+      if (d < farthest - kChartSlack) return {false, d, i};
+      farthest = std::max(farthest, d);
+      inside = {true, d, i};
+      continue;
     }
+    const bool crosses = outside && margin <= 0 && kind == Distance::clearance &&
+                         !chart.segment_is_clear(track[i - 1].lat, track[i - 1].lon, p.lat, p.lon, 0.0);
+    outside = true;
+    if (d < margin || crosses) return {false, std::min(d, margin), i};
+    if (d < kept.found) kept = {true, d, i};
   }
-  return kept;
+  return outside ? kept : inside;
 }
 
 Margin judge_flight(const Evidence& e) {

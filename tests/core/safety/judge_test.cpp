@@ -73,7 +73,7 @@ TEST_CASE("a file cut anywhere, or of random bytes, is refused and judged by eve
   std::mt19937 random{7};
   for (int round = 0; round < 300; ++round) {
     c.dossier.file_bytes.clear();
-    for (unsigned n = random() % 5000; n > 0; --n) c.dossier.file_bytes += static_cast<char>(random() % 256);
+    for (auto n = random() % 5000; n > 0; --n) c.dossier.file_bytes += static_cast<char>(random() % 256);
     REQUIRE_FALSE(c.judged().accepted);
   }
 }
@@ -109,7 +109,8 @@ TEST_CASE("a waiting list and lists on both sides of the antimeridian are accept
     d.at.fix = geo_point(-52, lon);
     const Bearing way{degrees(lon > 0 ? 80 : 280)};
     d.promise.goal = test::as_written(destination(d.at.fix, way, Metres{20'000}));
-    far.write({destination(d.at.fix, way, Metres{4500}), destination(d.at.fix, way, Metres{9000}), d.promise.goal}, 400);
+    far.write({destination(d.at.fix, way, Metres{4500}), destination(d.at.fix, way, Metres{9000}), d.promise.goal},
+              400);
     CHECK(far.failing() == "");
   }
 }

@@ -40,8 +40,8 @@ TEST_CASE("in still water the arrival is the geodesic's, at every latitude and a
   struct Way {
     double lat, lon, bearing;
   };
-  for (const auto& way : {Way{0, 0, 0}, Way{0, 0, 90}, Way{28, -16, 210}, Way{60, 5, 100}, Way{-75, -40, 180}, Way{75, 20, 80},
-                          Way{-75, 179.8, 95}, Way{5, 179.9, 60}, Way{5, -179.9, 270}}) {
+  for (const auto& way : {Way{0, 0, 0}, Way{0, 0, 90}, Way{28, -16, 210}, Way{60, 5, 100}, Way{-75, -40, 180},
+                          Way{75, 20, 80}, Way{-75, 179.8, 95}, Way{5, 179.9, 60}, Way{5, -179.9, 270}}) {
     CAPTURE(way.lat, way.lon, way.bearing);
     const auto fix = geo_point(way.lat, way.lon);
     const double length = 60'000;
@@ -86,9 +86,10 @@ TEST_CASE("a glider that knows a uniform current surfaces at dive + (U·h + c)·
     const auto& stint = flight.stints.front();
     CHECK(distance(stint.dived, dive).si() < 0.1);
     const auto way = offset(stint.dived, stint.surfaced);
-    // 1e-4 of 4 km for the plane's metric, and the last 1 % of the stint flown straight on
-    CHECK(way.east == Approx(g_east * t).margin(1.0));
-    CHECK(way.north == Approx(g_north * t).margin(1.0));
+    // A geodesic's bearing turns by the convergence of the meridians, Δeast/R·tan φ; half of it acts on the whole way.
+    const double bent = 0.5 * g_east * t / 6.36e6 * std::tan(std::abs(degrees(lat).si())) * g * t;
+    CHECK(way.east == Approx(g_east * t).margin(0.2 + bent));
+    CHECK(way.north == Approx(g_north * t).margin(0.2 + bent));
     CHECK(stint.met.east.si() == Approx(c_east).margin(1e-9));
     CHECK(stint.drift.north.si() == Approx(c_north).margin(1e-9));
     CHECK(stint.surfaced_s - stint.dived_s == Approx(t).margin(2e-3));
@@ -179,14 +180,18 @@ TEST_CASE("rings larger than a leg are passed at once, a small ring is not jumpe
 
 TEST_CASE("the target outlives a surfacing and dead reckoning starts at the true dive point") {
   const auto fix = geo_point(20, -60);
-  auto o = order(fix, {destination(fix, Bearing{degrees(90)}, Metres{6000}), destination(fix, Bearing{degrees(90)}, Metres{40'000})}, 100);
+  auto o = order(
+      fix,
+      {destination(fix, Bearing{degrees(90)}, Metres{6000}), destination(fix, Bearing{degrees(90)}, Metres{40'000})},
+      100);
   o.glider.current_correction = 0;
   o.goal_radius = Metres{500};
   const auto flight = fly(o, uniform(-0.05, 0.10));
   // w_1 is not reached in the first stint, so the second one aims at it again from where it truly is.
   const auto& s = flight.stints[1];
   const double bearing = geodesic(s.dived, o.points[0]).departing.from_north().si();
-  const auto& next = *std::find_if(flight.track.begin(), flight.track.end(), [&](const TrackPoint& p) { return p.stint == 1 && !p.drifting; });
+  const auto& next = *std::find_if(flight.track.begin(), flight.track.end(),
+                                   [&](const TrackPoint& p) { return p.stint == 1 && !p.drifting; });
   const auto step = offset(s.dived, next.at());
   const double dt = next.t_s - s.dived_s;
   CHECK(step.east == Approx((0.3 * std::sin(bearing) - 0.05) * dt).margin(0.05));
@@ -203,7 +208,7 @@ TEST_CASE("a waiting list ends with its last hit, a list of one point keeps stee
   o.at_end = model::AtEnd::loop;
   const auto stays = fly(o, uniform(0, 0));
   CHECK(stays.end == FlightEnd::stints);
-  for (const auto& s : stays.stints) CHECK(distance(s.surfaced, o.points[0]).si() < 20);  // one step
+  for (const auto& s : stays.stints) CHECK(distance(s.surfaced, o.points[0]).si() < 27);  // a step and a half
 }
 
 TEST_CASE("correction 1 believes the measured current first and then the mean met in the stint before") {
@@ -211,7 +216,10 @@ TEST_CASE("correction 1 believes the measured current first and then the mean me
   auto o = order(fix, {geo_point(1, 0)});
   o.believed_current = current(0.02, 0.03);
   const double start = o.fix_s;
-  const FormulaField rising{[=](GeoPoint, double, double t) -> Answer { return ocean::Sample{current((t - start) * 1e-6, 0), false}; }, {}};
+  const FormulaField rising{[=](GeoPoint, double, double t) -> Answer {
+                              return ocean::Sample{current((t - start) * 1e-6, 0), false};
+                            },
+                            {}};
   const auto flight = fly(o, rising);
   CHECK(flight.stints[0].believed == current(0.02, 0.03));
   // linear in time: the mean is the value in the middle of the stint
@@ -227,8 +235,16 @@ TEST_CASE("the yo goes down, turns between its depths and comes up at the end of
   g.dive_depth = Metres{150};
   g.climb_to = Metres{30};
   const double length = 10'000;
-  for (const auto& [t, depth] : std::vector<std::pair<double, double>>{
-           {0, 0}, {500, 75}, {1000, 150}, {1400, 90}, {1800, 30}, {2200, 90}, {2600, 150}, {9000, 150}, {9500, 75}, {10'000, 0}})
+  for (const auto& [t, depth] : std::vector<std::pair<double, double>>{{0, 0},
+                                                                       {500, 75},
+                                                                       {1000, 150},
+                                                                       {1400, 90},
+                                                                       {1800, 30},
+                                                                       {2200, 90},
+                                                                       {2600, 150},
+                                                                       {9000, 150},
+                                                                       {9500, 75},
+                                                                       {10'000, 0}})
     CHECK(yo_depth(g, t, length) == Approx(depth).margin(1e-9));
   g.climb_to = Metres{400};  // above nothing: it stays at its depth
   CHECK(yo_depth(g, 5000, length) == 150);
@@ -242,12 +258,16 @@ TEST_CASE("the current is sampled at the depth of the yo, the drift at the surfa
   o.glider.dive_depth = Metres{150};
   o.glider.climb_to = Metres{30};
   o.schedule.first_stint = Seconds{10'000};
-  const FormulaField sheared{[](GeoPoint, double z, double) -> Answer { return ocean::Sample{current(0.002 * z, 0.01), false}; }, {}};
+  const FormulaField sheared{[](GeoPoint, double z, double) -> Answer {
+                               return ocean::Sample{current(0.002 * z, 0.01), false};
+                             },
+                             {}};
   const auto s = fly(o, sheared).stints[0];
   // Mean depth: two straight ways of 1000 s (mean 75 m), five yos of 1600 s between 30 and 150 m (mean 90 m). Each of
   // the eleven turns inside a 60 s step costs at most 0.15·60²/8 m·s: below 0.1 m of the mean.
   CHECK(s.met.east.si() == Approx(0.002 * (2000 * 75 + 8000 * 90) / 10'000).margin(2e-4));
-  CHECK(s.drift == current(0, 0.01));
+  CHECK(s.drift.east.si() == 0);
+  CHECK(s.drift.north.si() == Approx(0.01).epsilon(1e-12));
 }
 
 TEST_CASE("below the bottom the deepest value above it counts") {
@@ -267,7 +287,8 @@ TEST_CASE("below the bottom the deepest value above it counts") {
   // the way between 30 and 60 (mean 45) and 1200 s at 60.
   const double mean = (2 * (400 * 30 + 600 * 60) + 5 * (400 * 45 + 1200 * 60)) / 10'000.0;
   CHECK(s.met.east.si() == Approx(0.002 * mean).margin(0.002 * 0.6));  // half a metre by halving, 0.1 m by steps
-  const FormulaField dry{[](GeoPoint, double, double) -> Answer { return unexpected(ocean::NoCurrent::below_bottom); }, {}};
+  const FormulaField dry{[](GeoPoint, double, double) -> Answer { return unexpected(ocean::NoCurrent::below_bottom); },
+                         {}};
   CHECK(fly(o, dry).end == FlightEnd::no_data);
 }
 
@@ -311,18 +332,21 @@ TEST_CASE("a flight ends where there is no current and says why") {
                         },
                         {}};
   };
-  for (const auto& [reason, end] : std::vector<std::pair<ocean::NoCurrent, FlightEnd>>{
-           {ocean::NoCurrent::land, FlightEnd::land},
-           {ocean::NoCurrent::no_data, FlightEnd::no_data},
-           {ocean::NoCurrent::outside_area, FlightEnd::outside_area},
-           {ocean::NoCurrent::outside_time, FlightEnd::outside_time}}) {
+  for (const auto& [reason, end] :
+       std::vector<std::pair<ocean::NoCurrent, FlightEnd>>{{ocean::NoCurrent::land, FlightEnd::land},
+                                                           {ocean::NoCurrent::no_data, FlightEnd::no_data},
+                                                           {ocean::NoCurrent::outside_area, FlightEnd::outside_area},
+                                                           {ocean::NoCurrent::outside_time, FlightEnd::outside_time}}) {
     const auto flight = fly(o, stop(reason));
     CHECK(flight.end == end);
     CHECK_FALSE(flight.arrival_s.has_value());
     CHECK(flight.arrival_index == flight.track.size());
     CHECK(flight.track.back().at().lat.degrees() == Approx(0.05).margin(18.0 / 111'000));
   }
-  const FormulaField broken{[](GeoPoint, double, double) -> Answer { return ocean::Sample{current(NAN, 0), false}; }, {}};
+  const FormulaField broken{[](GeoPoint, double, double) -> Answer {
+                              return ocean::Sample{current(NAN, 0), false};
+                            },
+                            {}};
   CHECK(fly(o, broken).end == FlightEnd::not_finite);
   auto brief = o;
   brief.horizon_s = o.fix_s + 30'000;

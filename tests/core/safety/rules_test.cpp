@@ -119,8 +119,9 @@ TEST_CASE("rule 4 format: what the reader refuses is refused with line and colum
   CHECK_FALSE(m.holds);
   CHECK(m.found == 8);
   CHECK(m.message == "line 8, column 28: initial_wpt is 1, allowed is 0");
-  for (const char* rule : {"4 points", "1 waypoints", "1 legs", "1 first leg", "1 neighbours", "1 reach", "2 flight", "2 land",
-                           "2 areas", "2 tail", "promise surfacing", "promise arrival", "forecast speed", "forecast values"})
+  for (const char* rule :
+       {"4 points", "1 waypoints", "1 legs", "1 first leg", "1 neighbours", "1 reach", "2 flight", "2 land", "2 areas",
+        "2 tail", "promise surfacing", "promise arrival", "forecast speed", "forecast values"})
     CHECK_FALSE(margin(verdict, rule).holds);
 }
 
@@ -130,7 +131,8 @@ TEST_CASE("rule 4 points: half a unit of the last digit is rounding, more is ano
     auto c = good_case();
     const auto meant = c.dossier.promise.points[1].at;
     const auto shift = [&](double lat_units, double lon_units) {
-      c.dossier.promise.points[1].at = geo_point(meant.lat.degrees() + sign * lat_units * unit, meant.lon.degrees() + sign * lon_units * unit);
+      c.dossier.promise.points[1].at =
+          geo_point(meant.lat.degrees() + sign * lat_units * unit, meant.lon.degrees() + sign * lon_units * unit);
       return c.failing();
     };
     CHECK(shift(0.49, -0.49) == "");
@@ -265,7 +267,8 @@ TEST_CASE("rule 1 first leg: the first waypoint lies outside its own radius") {
 
 TEST_CASE("rule 1 neighbours: successive waypoints are farther apart than the radius") {
   auto c = good_case();
-  for (const auto& [second, expected] : std::vector<std::pair<double, std::string>>{{4.901, ""}, {4.899, "1 neighbours"}}) {
+  for (const auto& [second, expected] :
+       std::vector<std::pair<double, std::string>>{{4.901, ""}, {4.899, "1 neighbours"}}) {
     auto points = along(c, {4.5, second});
     points.push_back(c.dossier.promise.goal);
     c.write(points, 400);
@@ -365,10 +368,11 @@ TEST_CASE("rule forecast speed: no current met is faster than refused") {
   auto c = good_case();
   const double late = *c.dossier.promise.list_arrival_s + 3600;
   const auto fast = [&](double speed) {
-    return test::FormulaField{[=](GeoPoint, double, double t) -> Answer {
-                                return ocean::Sample{t > late && t < late + 300 ? current(speed, 0) : current(0.05, 0.02), false};
-                              },
-                              {}};
+    return test::FormulaField{
+        [=](GeoPoint, double, double t) -> Answer {
+          return ocean::Sample{t > late && t < late + 300 ? current(speed, 0) : current(0.05, 0.02), false};
+        },
+        {}};
   };
   c.field = fast(5.0);
   CHECK(c.failing() == "");

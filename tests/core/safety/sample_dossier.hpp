@@ -36,8 +36,8 @@ inline FormulaField uniform(double east, double north) {
 inline std::string ddmm(double degrees) {
   const long long units = std::llround(std::abs(degrees) * kUnits);
   char text[32];
-  std::snprintf(text, sizeof text, "%s%lld.%04lld", degrees < 0 ? "-" : "", units / 600'000 * 100 + units % 600'000 / 10'000,
-                units % 10'000);
+  std::snprintf(text, sizeof text, "%s%lld.%04lld", degrees < 0 ? "-" : "",
+                units / 600'000 * 100 + units % 600'000 / 10'000, units % 10'000);
   return text;
 }
 

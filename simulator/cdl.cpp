@@ -71,7 +71,8 @@ std::string coastal_cdl(const CoastalSpec& spec, Variant variant, const CdlGrid&
   std::vector<bool> land;
   land.reserve(lats.size() * lons.size());
   for (const double lat : lats)
-    for (const double lon : lons) land.push_back(chart.is_land(GeoPoint::from_kernel(degrees(lat).si(), degrees(lon).si())));
+    for (const double lon : lons)
+      land.push_back(chart.is_land(GeoPoint::from_kernel(degrees(lat).si(), degrees(lon).si())));
 
   std::string out = header(spec, variant, hours.size(), lats.size(), lons.size());
   put_axis(out, "time", hours);
@@ -93,8 +94,10 @@ std::string coastal_cdl(const CoastalSpec& spec, Variant variant, const CdlGrid&
           const double lon = std::min(std::max(lons[i], spec.west_deg + 1e-9), spec.east_deg - 1e-9);
           const auto s = field.sample(GeoPoint::from_kernel(degrees(lat).si(), degrees(lon).si()), Depth{},
                                       spec.start_s + 3600.0 * hours[t]);
-          if (!s) out += '_';
-          else fmt::format_to(std::back_inserter(out), "{:.4f}", east ? s->current.east.si() : s->current.north.si());
+          if (!s)
+            out += '_';
+          else
+            fmt::format_to(std::back_inserter(out), "{:.4f}", east ? s->current.east.si() : s->current.north.si());
         }
       }
     out += " ;\n";

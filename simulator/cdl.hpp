@@ -10,7 +10,7 @@ namespace glidehelm::simulator {
 /// The grid that a CDL file samples a field on.
 struct CdlGrid {
   double step_deg{0.05};
-  int hours{96};         ///< last time; hourly from the field's start
+  int hours{96};  ///< last time; hourly from the field's start
   int every_h{1};
   friend bool operator==(const CdlGrid&, const CdlGrid&) = default;
 };

@@ -51,7 +51,8 @@ CoastalField::CoastalField(const CoastalSpec& spec, Variant variant)
 void CoastalField::draw_jets(const CoastalSpec& spec, Variant variant) {
   Random random = Random{spec.seed}.stream(kJets), change = Random{spec.seed}.stream(kTruthJets);
   const double side = sign_of(random.uniform());
-  jets_ = {{0.0, spec.jet_width_km * 1e3, -spec.jet}, {side * spec.jet_offset_km * 1e3, spec.jet_width_km * 1e3, spec.counter_jet}};
+  jets_ = {{0.0, spec.jet_width_km * 1e3, -spec.jet},
+           {side * spec.jet_offset_km * 1e3, spec.jet_width_km * 1e3, spec.counter_jet}};
   if (variant == Variant::forecast) return;
   for (auto& jet : jets_) {
     jet.speed *= 1.0 + spec.jet_change * change.uniform(-1, 1);

@@ -18,23 +18,23 @@ enum class Variant { forecast, truth };
 struct CoastalSpec {
   std::uint64_t seed{1};
   double west_deg{}, east_deg{}, south_deg{}, north_deg{};  ///< area; east > west, at most 20° each way
-  GeoPoint from, to;                   ///< ends of the straight way that the jets follow
-  double start_s{};                    ///< epoch seconds: where eddies stand as drawn and the tide has its drawn phase
-  double jet{0.16};                    ///< against the straight way, on it, m/s
-  double counter_jet{0.24};            ///< along the straight way, beside it, m/s
-  double jet_width_km{6};              ///< e-folding half width
-  double jet_offset_km{14};            ///< from the opposing to the favourable jet; the side is drawn
-  double eddy{0.12};                   ///< strongest eddy, m/s; each is drawn between half of it and all of it
-  int eddies{8};                       ///< number drawn per 2.5° × 2.5°; 0 for none
+  GeoPoint from, to;                                        ///< ends of the straight way that the jets follow
+  double start_s{};          ///< epoch seconds: where eddies stand as drawn and the tide has its drawn phase
+  double jet{0.16};          ///< against the straight way, on it, m/s
+  double counter_jet{0.24};  ///< along the straight way, beside it, m/s
+  double jet_width_km{6};    ///< e-folding half width
+  double jet_offset_km{14};  ///< from the opposing to the favourable jet; the side is drawn
+  double eddy{0.12};         ///< strongest eddy, m/s; each is drawn between half of it and all of it
+  int eddies{8};             ///< number drawn per 2.5° × 2.5°; 0 for none
   double eddy_min_km{25}, eddy_max_km{60};  ///< diameter of the ring of fastest flow
-  double eddy_drift{0.03};             ///< westward, m/s
-  double tide{0.10};                   ///< M2, major axis along the straight way, m/s
-  double tide_ratio{0.35};             ///< minor to major axis
+  double eddy_drift{0.03};                  ///< westward, m/s
+  double tide{0.10};                        ///< M2, major axis along the straight way, m/s
+  double tide_ratio{0.35};                  ///< minor to major axis
   // How the truth differs from the forecast of the same seed.
-  double shift_km{4};                  ///< every eddy is elsewhere by this much, in a drawn direction
-  double tide_lag_deg{15};             ///< of phase
-  double jet_change{0.08};             ///< share by which both jets are weaker or stronger (drawn), and shifted in widths
-  double noise{0.03};                  ///< small eddies of 6–12 km that the forecast does not have, m/s
+  double shift_km{4};       ///< every eddy is elsewhere by this much, in a drawn direction
+  double tide_lag_deg{15};  ///< of phase
+  double jet_change{0.08};  ///< share by which both jets are weaker or stronger (drawn), and shifted in widths
+  double noise{0.03};       ///< small eddies of 6–12 km that the forecast does not have, m/s
   friend bool operator==(const CoastalSpec&, const CoastalSpec&) = default;
 };
 
@@ -68,7 +68,7 @@ class CoastalField {
     double drift_x;                ///< m/s
   };
   struct Jet {
-    double centre, width, speed;   ///< m, m, m/s along the way
+    double centre, width, speed;  ///< m, m, m/s along the way
   };
   void draw_jets(const CoastalSpec& spec, Variant variant);
   void draw_eddies(const CoastalSpec& spec, Variant variant);

@@ -1,0 +1,149 @@
+#include "simulator/simulation.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/simulator/support.hpp"
+
+using namespace glidehelm;
+using namespace glidehelm::test;
+using simulator::EndPlan;
+using simulator::GliderPlan;
+using simulator::MemoryToGlider;
+using simulator::RunEnd;
+using simulator::Simulation;
+
+namespace {
+
+const chart::Chart kOpen;
+
+GliderPlan plan_to(double goal_km, const std::string& name = "sim01") {
+  GliderPlan p;
+  p.setup.name = name;
+  p.setup.start = geo_point(40, 5);
+  p.setup.start_s = 1.7e9;
+  p.setup.cycle_s = 20;
+  p.goal = destination(p.setup.start, Bearing{degrees(45)}, Metres{goal_km * 1e3});
+  p.setup.list.waypoints = {p.goal};
+  p.setup.list.radius = Metres{500};
+  p.setup.list.initial = 0;
+  return p;
+}
+
+std::string run(Simulation& sim) {
+  std::string all;
+  Instant last{};
+  while (const auto next = sim.next_event()) {
+    REQUIRE(*next >= last);
+    last = *next;
+    for (auto& o : sim.step()) all += std::to_string(o.glider) + o.event.bytes;
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a glider that is sent to its goal in still water arrives when speed and schedule say") {
+  MemoryToGlider folder;
+  Simulation sim{{{plan_to(20), &folder}}, {kStill, kStill}, kOpen, EndPlan{}, 1};
+  run(sim);
+  REQUIRE(sim.result(0).end == RunEnd::arrived);
+  CHECK(sim.all_arrived());
+  // 18 km to the radius at 0.3 m/s: 60 000 s of flight, 4.17 stints; before the first dive 60 + 900 s, and the same
+  // before each of four more. Interpolation inside a cycle of 6 m: 20 s at most.
+  CHECK(*sim.result(0).arrived_s - 1.7e9 == Approx(60'000 + 5 * 960).margin(20));
+  CHECK(sim.result(0).surfacings == 6);
+  CHECK(sim.dives(0).size() == 5);
+  CHECK(sim.surfacings(0).size() == 6);
+}
+
+TEST_CASE("the same plans and seeds give the same bytes; another seed gives others") {
+  const auto bytes = [](std::uint64_t seed) {
+    MemoryToGlider a, b;
+    auto one = plan_to(200, "one"), two = plan_to(14, "two");
+    one.lost_calls.probability = 0.4;
+    one.setup.stint_jitter = two.setup.stint_jitter = 0.05;
+    two.setup.seed = 7;
+    Simulation sim{{{one, &a}, {two, &b}}, {kUniform, kUniform}, kOpen, EndPlan{true, 12, std::nullopt}, seed};
+    return run(sim);
+  };
+  const auto first = bytes(1);
+  CHECK(first.size() > 10'000);
+  CHECK((first == bytes(1)));  // in brackets: a failure must not print megabytes
+  CHECK((first != bytes(2)));
+}
+
+TEST_CASE("a file offered during the call is flown in the next dive") {
+  MemoryToGlider folder;
+  Simulation sim{{{plan_to(60), &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 2, std::nullopt}, 1};
+  bool offered = false;
+  while (sim.next_event()) {
+    for (const auto& o : sim.step())
+      if (!offered && o.event.bytes.find("at surface.") != std::string::npos) {
+        folder.offer("goto_l10.ma",
+                     "behavior_name=goto_list\n<start:b_arg>\nb_arg: initial_wpt(enum) 0\n<end:b_arg>\n"
+                     "<start:waypoints>\n400.0 4000.0\n<end:waypoints>\n");
+        offered = true;
+      }
+  }
+  REQUIRE(sim.dives(0).size() == 1);
+  CHECK(sim.dives(0)[0].truth.heading.degrees() == Approx(270).margin(0.5));
+  CHECK(sim.result(0).lists_taken == 1);
+}
+
+TEST_CASE("runs end after their surfacings or days, and say so") {
+  MemoryToGlider folder;
+  Simulation few{{{plan_to(600), &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 3, std::nullopt}, 1};
+  run(few);
+  CHECK(few.result(0).end == RunEnd::surfacings);
+  CHECK(few.result(0).surfacings == 3);
+  Simulation brief{{{plan_to(600), &folder}}, {kStill, kStill}, kOpen, EndPlan{true, std::nullopt, 1.0}, 1};
+  run(brief);
+  CHECK(brief.result(0).end == RunEnd::days);
+  CHECK_FALSE(brief.all_arrived());
+}
+
+TEST_CASE("an accident ends the run of its glider only") {
+  FormulaField small = kStill;
+  small.limits.north = degrees(40.03).si();
+  MemoryToGlider a, b;
+  auto there = plan_to(2, "near");
+  there.goal_radius = Metres{500};
+  Simulation sim{{{plan_to(60, "far"), &a}, {there, &b}}, {small, small}, kOpen, EndPlan{}, 1};
+  run(sim);
+  CHECK(sim.result(0).end == RunEnd::accident);
+  CHECK(sim.result(0).reason.find("left the area of the true ocean") == 0);
+  CHECK(sim.result(1).end == RunEnd::arrived);
+}
+
+TEST_CASE("a bad list ends the mission and is counted") {
+  MemoryToGlider folder;
+  folder.offer("goto_l10.ma", "behavior_name=goto_list\n<start:b_arg>\nb_arg: nonsense(m) 1\n<end:b_arg>\n");
+  Simulation sim{{{plan_to(60), &folder}}, {kStill, kStill}, kOpen, EndPlan{}, 1};
+  run(sim);
+  CHECK(sim.result(0).end == RunEnd::behaviour_error);
+  CHECK(sim.result(0).behaviour_errors == 1);
+  CHECK(sim.result(0).reason == "bad goto list after Ctrl-F, line 3: unknown b_arg nonsense");
+}
+
+TEST_CASE("faults strike the surfacings that they name, and by chance as often as they should") {
+  MemoryToGlider folder;
+  auto named = plan_to(600);
+  named.lost_calls.surfacings = {2, 3};
+  named.redial.surfacings = {4};
+  Simulation sim{{{named, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 5, std::nullopt}, 1};
+  run(sim);
+  for (const auto& s : sim.surfacings(0)) {
+    CHECK(s.faults.lost == (s.number == 2 || s.number == 3));
+    CHECK(s.faults.redial == (s.number == 4));
+  }
+  auto chance = plan_to(6000);
+  chance.not_taken.probability = 0.3;
+  chance.setup.cycle_s = 600;
+  Simulation many{{{chance, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 400, std::nullopt}, 5};
+  run(many);
+  int struck = 0;
+  for (const auto& s : many.surfacings(0)) struck += s.faults.not_taken ? 1 : 0;
+  // Binomial(400, 0.3): mean 120, deviation 9.2; four deviations.
+  CHECK(std::abs(struck - 120) < 37);
+}

@@ -50,9 +50,9 @@ struct Coverage {
 struct Lanes {
   static constexpr int kMax = 72;
   int count{};
-  alignas(64) std::array<double, kMax> lat, lon;            ///< radians
+  alignas(64) std::array<double, kMax> lat, lon;                 ///< radians
   alignas(64) std::array<double, kMax> water_east, water_north;  ///< velocity through water, m/s; 0 drifts
-  alignas(64) std::array<std::uint8_t, kMax> lost;          ///< 0 under way, else the NoCurrent that stopped the lane
+  alignas(64) std::array<std::uint8_t, kMax> lost;  ///< 0 under way, else the NoCurrent that stopped the lane
 };
 
 /// A velocity field: `sample` for edges and `coverage`. Deterministic, const, callable from several threads at once.

@@ -1,0 +1,97 @@
+#include "core/ocean/depth_average.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidehelm::ocean {
+
+namespace {
+
+/// Adds ∫ density · (current between level k and k+1) over [from, to] to the two levels' weights. The current is linear,
+/// so the mean over the interval is the value at its middle.
+void add_interval(std::vector<double>& weights, std::span<const double> depths, std::size_t k, double from, double to,
+                  double density) {
+  if (!(to > from) || density == 0) return;
+  const double fraction = (0.5 * (from + to) - depths[k]) / (depths[k + 1] - depths[k]);
+  weights[k] += density * (to - from) * (1 - fraction);
+  weights[k + 1] += density * (to - from) * fraction;
+}
+
+}  // namespace
+
+DiveProfile DiveProfile::of_stint(Metres climb_to, Metres dive_depth, MetresPerSecond horizontal, Radians glide_angle,
+                                  Seconds stint) {
+  const double vertical = horizontal.si() * std::tan(glide_angle.si());
+  const double way = 0.5 * vertical * stint.count();  // Δz_out + (n − 1) Δz_in of 2.14
+  const double outer = dive_depth.si(), inner = dive_depth.si() - climb_to.si();
+  if (way <= outer) return {Metres{std::min(climb_to.si(), way)}, Metres{way}, 1, 1};
+  return {climb_to, dive_depth, 1, 1 + (way - outer) / inner};
+}
+
+std::vector<double> column_weights(std::span<const double> depths_m, std::size_t wet, const DiveProfile& profile) {
+  std::vector<double> weights(depths_m.size(), 0.0);
+  const double bottom = depths_m[wet - 1], upper = profile.upper.si(), lower = std::min(profile.lower.si(), bottom);
+  if (bottom <= 0) {  // the only wet level lies at the surface: it stands for the whole column
+    if (profile.above == 0 && upper > 0) return {};
+    weights[wet - 1] = 1;
+    return weights;
+  }
+  const auto over = [&](double from, double to, double density) {
+    to = std::min(to, lower);
+    // Above the first level its value holds.
+    if (const double end = std::min(to, depths_m[0]); end > from) weights[0] += density * (end - from);
+    for (std::size_t k = 0; k + 1 < wet; ++k)
+      add_interval(weights, depths_m, k, std::max(from, depths_m[k]), std::min(to, depths_m[k + 1]), density);
+  };
+  over(0, upper, profile.above);
+  over(upper, profile.lower.si(), profile.below);
+  double sum = 0;
+  for (const double weight : weights) sum += weight;
+  if (!(sum > 0)) return {};
+  for (double& weight : weights) weight /= sum;
+  return weights;
+}
+
+Grid depth_average(const GridView& grid, const DiveProfile& profile) {
+  Grid mean{grid.axes, grid.facts, {}};
+  const std::size_t levels = grid.axes.depths_m.size(), times = grid.axes.times_s.size();
+  const std::size_t plane = grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
+  mean.axes.depths_m = {0.0};
+  mean.axes.has_depth = false;
+  mean.values.assign(2 * plane * times, std::numeric_limits<float>::quiet_NaN());
+  if (levels == 1) {
+    std::copy(grid.values, grid.values + mean.values.size(), mean.values.begin());
+    return mean;
+  }
+  std::vector<std::vector<double>> weights(levels + 1);
+  for (std::size_t wet = 1; wet <= levels; ++wet) weights[wet] = column_weights(grid.axes.depths_m, wet, profile);
+
+  std::vector<std::size_t> wet(plane);
+  std::vector<double> sums(2 * plane);
+  for (std::size_t t = 0; t < times; ++t) {
+    const float* column = grid.values + t * levels * plane * 2;
+    for (std::size_t n = 0; n < plane; ++n) {
+      wet[n] = 0;
+      while (wet[n] < levels && !std::isnan(column[2 * (wet[n] * plane + n)])) ++wet[n];
+    }
+    std::fill(sums.begin(), sums.end(), 0.0);
+    // Level by level, so that memory is read in its order.
+    for (std::size_t k = 0; k < levels; ++k)
+      for (std::size_t n = 0; n < plane; ++n) {
+        if (k >= wet[n] || weights[wet[n]].empty()) continue;
+        const double weight = weights[wet[n]][k];
+        sums[2 * n] += weight * static_cast<double>(column[2 * (k * plane + n)]);
+        sums[2 * n + 1] += weight * static_cast<double>(column[2 * (k * plane + n) + 1]);
+      }
+    float* out = mean.values.data() + t * plane * 2;
+    for (std::size_t n = 0; n < plane; ++n) {
+      if (wet[n] == 0 || weights[wet[n]].empty()) continue;
+      out[2 * n] = static_cast<float>(sums[2 * n]);
+      out[2 * n + 1] = static_cast<float>(sums[2 * n + 1]);
+    }
+  }
+  return mean;
+}
+
+}  // namespace glidehelm::ocean

@@ -7,9 +7,16 @@ namespace glidehelm::daemon {
 namespace {
 constexpr Seconds kFirstBackOff{1};
 constexpr Seconds kLongestBackOff{300};
+
+/// "192.0.2.7" of "192.0.2.7:53124", "::1" of "[::1]:53124".
+std::string_view host_of(std::string_view peer) {
+  auto host = peer.substr(0, peer.rfind(':'));
+  if (host.size() > 2 && host.front() == '[' && host.back() == ']') host = host.substr(1, host.size() - 2);
+  return host;
+}
 }  // namespace
 
-Line::Line(world::World world, config::LineConfig line, Handlers handlers)
+Line::Line(world::World world, config::Line line, Handlers handlers)
     : world_{world}, line_{std::move(line)}, handlers_{std::move(handlers)}, alive_{std::make_shared<bool>(true)} {}
 
 Line::~Line() {
@@ -20,7 +27,7 @@ Line::~Line() {
 
 Expected<Done, world::NetError> Line::start() {
   if (const auto* listen = std::get_if<config::Listen>(&line_)) {
-    auto listener = world_.net.listen_tcp(listen->address, listen->port, [this, alive = alive_](std::shared_ptr<world::Stream> stream) {
+    auto listener = world_.net.listen_tcp(listen->at.host, listen->at.port, [this, alive = alive_](std::shared_ptr<world::Stream> stream) {
       if (*alive) take(std::move(stream));
     });
     if (!listener) return unexpected(listener.error());
@@ -32,7 +39,7 @@ Expected<Done, world::NetError> Line::start() {
 }
 
 void Line::take(std::shared_ptr<world::Stream> stream) {
-  if (const auto* listen = std::get_if<config::Listen>(&line_); listen != nullptr && !listen->admits(stream->peer())) {
+  if (const auto* listen = std::get_if<config::Listen>(&line_); listen != nullptr && !listen->lets_in(host_of(stream->peer()))) {
     handlers_.trouble("connection from " + stream->peer() + " is not in `allow`: closed");
     stream->close();
     return;
@@ -70,7 +77,7 @@ void Line::drop(std::string_view reason) {
 
 void Line::dial() {
   const auto& connect = std::get<config::Connect>(line_);
-  world_.net.connect_tcp(connect.host, connect.port,
+  world_.net.connect_tcp(connect.to.host, connect.to.port,
                          [this, alive = alive_](Expected<std::shared_ptr<world::Stream>, world::NetError> stream) {
                            if (!*alive) return;
                            if (stream) {

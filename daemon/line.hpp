@@ -27,7 +27,7 @@ class Line {
     std::function<void(std::string_view problem)> trouble;  ///< a dial failed, a peer is not allowed: said once per cause
   };
 
-  Line(world::World world, config::LineConfig line, Handlers handlers);
+  Line(world::World world, config::Line line, Handlers handlers);
   ~Line();
   Line(const Line&) = delete;
   Line& operator=(const Line&) = delete;
@@ -45,7 +45,7 @@ class Line {
   void lost(std::uint64_t connection, std::string_view reason);
 
   world::World world_;
-  config::LineConfig line_;
+  config::Line line_;
   Handlers handlers_;
   std::unique_ptr<world::Listener> listener_;
   std::shared_ptr<world::Stream> stream_;

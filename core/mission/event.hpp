@@ -123,11 +123,16 @@ struct TimerFired {
   std::uint64_t serial{};                     ///< of the SetTimer that asked for it; an older one is ignored
   friend bool operator==(const TimerFired&, const TimerFired&) = default;
 };
-/// A reload, or the start: in force at the next surfacing. `yaml` is the file itself, so that a replay reads it again.
-struct MissionChanged {
+/// A mission with the file it was read from, so that a replay of the journal reads it again.
+struct MissionText {
   Mission mission;
-  std::string yaml;
-  std::string sha256;
+  std::string yaml;                           ///< the mission in full, every default written out
+  std::string sha256;                         ///< of the file as the pilot wrote it
+  friend bool operator==(const MissionText&, const MissionText&) = default;
+};
+/// A reload, or the start: in force at the next surfacing.
+struct MissionChanged {
+  std::vector<MissionText> chain;             ///< the first begins, the next takes over at its goal (`after_goal`); empty: none
   bool clock_skew_ok{};
   std::string by;                             ///< "start", "SIGHUP", "uid 1000"
   friend bool operator==(const MissionChanged&, const MissionChanged&) = default;

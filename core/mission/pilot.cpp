@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
@@ -85,8 +86,14 @@ void Pilot::on(const SurfacingHeard& e) {
 }
 
 void Pilot::on(const FixRefused& e) {
-  record("refusal", e.refusal.rule + ": " + e.refusal.reason);
-  say(Level::note, "refused-fix", fmt::format("fix refused ({}): {}", e.refusal.rule, e.refusal.reason));
+  const auto& r = e.refusal;
+  if (refused_ && refused_->rule == r.rule && refused_->lat_ddmm == r.lat_ddmm && refused_->lon_ddmm == r.lon_ddmm) {
+    record("duplicate", "refused fix heard again (" + r.rule + ")");
+    return;
+  }
+  refused_ = r;
+  record("refusal", r.rule + ": " + r.reason);
+  say(Level::note, "refused-fix", fmt::format("fix refused ({}): {}", r.rule, r.reason));
 }
 
 bool Pilot::is_duplicate(const model::Surfacing& s) const {
@@ -203,19 +210,13 @@ void Pilot::note_dialog(const model::Surfacing& s) {
 }
 
 void Pilot::open_surfacing(const model::Surfacing& s) {
-  if (next_mission_) {
-    mission_ = std::move(next_mission_);
-    mission_sha_ = next_sha_;
-    skew_ok_ = next_skew_ok_;
-    next_mission_.reset();
-    arrived_ = false;
-  }
+  if (change_) take_over(*std::exchange(change_, std::nullopt));
   if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
   key_ = fmt::format("{}/{}", glider_, clock_text(s.fix_taken));
   segment_.clear();
   dived_at_.reset();
   ++count_;
-  at_surface_seen_ = mission_named_ = budget_over_ = planning_over_ = transfer_began_ = replacing_ = false;
+  at_surface_seen_ = mission_named_ = budget_over_ = planning_over_ = transfer_began_ = replacing_ = alerted_ = false;
   wrong_mission_.clear();
   ranked_.clear();
   problem_.clear();
@@ -275,10 +276,22 @@ void Pilot::greet(const model::Surfacing& s, std::optional<Current> measured) {
   if (expected_place_)
     text += fmt::format(", {:.1f} km from where it was expected", distance(*expected_place_, s.fix).si() / 1000);
   say(Level::info, "surfacing", text);
-  if (mission_ && !arrived_ && distance(s.fix, mission_->goal) <= mission_->goal_radius) {
-    arrived_ = true;
+  arrive_if_there(s);
+}
+
+/// Inside the goal radius the mission has arrived; `after_goal` hands over at once, as often as the glider is there already.
+void Pilot::arrive_if_there(const model::Surfacing& s) {
+  while (mission_ && !arrived_ && distance(s.fix, mission_->goal) <= mission_->goal_radius) {
     say(Level::info, "arrived", fmt::format("mission {} arrived: {:.1f} km from the goal", mission_->name,
                                             distance(s.fix, mission_->goal).si() / 1000));
+    if (chain_.size() < 2) {
+      arrived_ = true;
+      return;
+    }
+    chain_.erase(chain_.begin());
+    mission_ = chain_.front().mission;
+    record("mission", fmt::format("{} takes over", mission_->name));
+    say(Level::info, "mission", fmt::format("mission {} takes over: goal {}", mission_->name, place(mission_->goal)));
   }
 }
 
@@ -483,11 +496,14 @@ void Pilot::emit_if_due() {
                                   ? fmt::format("arrives {} ({} from the fix)", clock_text(instant_at(plan.arrival_s)),
                                                 hours(Seconds{plan.arrival_s - epoch_seconds(last_->fix_taken)}))
                                   : fmt::format("comes within {:.1f} km of the goal: {}", plan.remaining.si() / 1000, plan.reason);
-  if (mission_->approval == Approval::manual) {
+  if (mission_->approval == Approval::manual || (mission_->approval == Approval::auto_if_safe && alerted_)) {
     stage_ = Stage::proposed;
     record("proposal", fmt::format("{} by {}, {}", best->candidate.file_name, plan.method, arrival));
-    say(Level::note, "proposed", fmt::format("proposal: {} by {}, {}; approval.mode is manual, nothing is emitted",
-                                             best->candidate.file_name, plan.method, arrival));
+    say(Level::note, "proposed", fmt::format("proposal: {} by {}, {}; {}, nothing is emitted", best->candidate.file_name,
+                                             plan.method, arrival,
+                                             alerted_ && mission_->approval == Approval::auto_if_safe
+                                                 ? "approval.mode is auto-if-safe and there was an alert"
+                                                 : "approval.mode is manual"));
     return;
   }
   stage_ = Stage::emitting;
@@ -583,20 +599,33 @@ void Pilot::on(const TimerFired& e) {
 // ---- steering the pilot ---------------------------------------------------------------------------------------------
 
 void Pilot::on(const MissionChanged& e) {
-  if (mission_sha_ == e.sha256 && mission_ && !next_mission_ && skew_ok_ == e.clock_skew_ok) return;
-  record("mission", fmt::format("{} ({}) by {}", e.mission.name, e.sha256.substr(0, 12), e.by));
-  const bool at_once = !mission_;
-  auto& mission = at_once ? mission_ : next_mission_;
-  mission = e.mission;
-  (at_once ? mission_sha_ : next_sha_) = e.sha256;
-  (at_once ? skew_ok_ : next_skew_ok_) = e.clock_skew_ok;
-  say(Level::info, "mission",
-      fmt::format("mission {}: goal {}, {:.1f} km radius, {} h stints, method {}, approval {}{}", e.mission.name, place(e.mission.goal),
-                  e.mission.goal_radius.si() / 1000, e.mission.stint.count() / 3600, e.mission.method,
-                  e.mission.approval == Approval::manual      ? "manual"
-                  : e.mission.approval == Approval::automatic ? "auto"
-                                                              : "auto-if-safe",
-                  at_once ? "" : "; in force at the next surfacing"));
+  if (!change_ && e.chain == chain_ && e.clock_skew_ok == skew_ok_) return;
+  if (change_ && e.chain == change_->chain && e.clock_skew_ok == change_->clock_skew_ok) return;
+  const bool at_once = !mission_ || stage_ == Stage::idle;
+  for (const auto& text : e.chain) {
+    const auto& m = text.mission;
+    record("mission", fmt::format("{} ({}) by {}", m.name, text.sha256.substr(0, 12), e.by));
+    say(Level::info, "mission",
+        fmt::format("mission {}: goal {}, {:.1f} km radius, {} h stints, method {}, approval {}{}", m.name, place(m.goal),
+                    m.goal_radius.si() / 1000, m.stint.count() / 3600, m.method,
+                    m.approval == Approval::manual      ? "manual"
+                    : m.approval == Approval::automatic ? "auto"
+                                                        : "auto-if-safe",
+                    at_once ? "" : "; in force at the next surfacing"));
+  }
+  if (e.chain.empty()) say(Level::note, "mission", "no mission is configured any more; at the next surfacing nothing is planned");
+  if (at_once)
+    take_over(e);
+  else
+    change_ = e;
+}
+
+void Pilot::take_over(const MissionChanged& change) {
+  chain_ = change.chain;
+  mission_.reset();
+  if (!chain_.empty()) mission_ = chain_.front().mission;
+  skew_ok_ = change.clock_skew_ok;
+  arrived_ = false;
 }
 
 /// After a crash: what was under way is settled. A plan is never finished from the journal; a new one is made while the
@@ -626,7 +655,10 @@ void Pilot::on(const Restarted& e) {
 
 // ---- saying ---------------------------------------------------------------------------------------------------------
 
-void Pilot::say(Level level, std::string code, std::string text) { out_.push_back(Say{level, std::move(code), std::move(text)}); }
+void Pilot::say(Level level, std::string code, std::string text) {
+  if (level == Level::alert || level == Level::page) alerted_ = true;
+  out_.push_back(Say{level, std::move(code), std::move(text)});
+}
 
 void Pilot::record(std::string kind, std::string text) { out_.push_back(Record{std::move(kind), key_, std::move(text)}); }
 

@@ -92,6 +92,8 @@ class Pilot {
   void set_deadline(Tick deadline);
   [[nodiscard]] Ranked* best_proven();
   void expect_next();
+  void take_over(const MissionChanged& change);
+  void arrive_if_there(const model::Surfacing& s);
   void greet(const model::Surfacing& s, std::optional<Current> measured);
 
   // saying
@@ -101,9 +103,10 @@ class Pilot {
   void cancel_timer(Timer timer);
 
   std::string glider_;
-  std::optional<Mission> mission_, next_mission_;
-  std::string mission_sha_, next_sha_;
-  bool skew_ok_{}, next_skew_ok_{};
+  std::vector<MissionText> chain_;                  ///< missions in force: the first is flown, the others wait for its goal
+  std::optional<Mission> mission_;                  ///< the one that is flown
+  std::optional<MissionChanged> change_;            ///< waits for the next surfacing
+  bool skew_ok_{};
 
   Moment now_{};
   Effects out_;
@@ -129,7 +132,8 @@ class Pilot {
   std::vector<Ranked> ranked_;
   std::string problem_;
   std::optional<GeoPoint> planned_from_;
-  bool transfer_began_{}, replacing_{};
+  bool transfer_began_{}, replacing_{}, alerted_{};
+  std::optional<model::Refusal> refused_;           ///< the last one, so that its reprints are not said again
   std::optional<std::string> skew_;
 
   // what was promised for the next one

@@ -21,7 +21,7 @@ struct PilotDesk {
   std::vector<mission::Event> events;
   std::vector<mission::Effects> effects;
 
-  explicit PilotDesk(mission::Mission m = mission_to_goal()) { step(mission::MissionChanged{std::move(m), "yaml", "sha-1", false, "start"}); }
+  explicit PilotDesk(mission::Mission m = mission_to_goal()) { step(mission::MissionChanged{{{std::move(m), "yaml", "sha-1"}}, false, "start"}); }
 
   static mission::Mission mission_to_goal() {
     mission::Mission m;

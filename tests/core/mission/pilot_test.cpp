@@ -94,6 +94,32 @@ TEST_CASE("manual approval proposes and emits nothing") {
   CHECK(proposed);
 }
 
+TEST_CASE("auto-if-safe emits, but only proposes when there was an alert") {
+  for (const bool alert : {false, true}) {
+    auto m = PilotDesk::mission_to_goal();
+    m.approval = Approval::auto_if_safe;
+    PilotDesk desk{m};
+    desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.5, -15.3)), std::nullopt});
+    const auto id = desk.last<BeginPlanning>()[0].request.id;
+    if (alert) desk.step(FolderSeen{FolderSeen::Found::unreadable, "EIO"});
+    const auto verify = PilotDesk::all<Verify>(desk.step(CandidateFound{desk.candidate(id, 1, "direct")}));
+    desk.step(PlanningEnded{id, ""});
+    desk.step(Judged{id, 1, test::verdict_on("goto_l10.ma", verify[0].dossier.file_bytes), ""});
+    CHECK(desk.last<Emit>().size() == (alert ? 0 : 1));
+    CHECK(said(desk.effects.back(), "proposed") == alert);
+  }
+}
+
+TEST_CASE("a refused fix is said once, however often it is printed") {
+  PilotDesk desk;
+  const model::Refusal refusal{"S3", "the fix is 1500 s old; allowed is 1200 s", "sim01", desk.now.utc, "2830.000", "-1518.000"};
+  desk.step(FixRefused{refusal});
+  CHECK(desk.last<Say>().size() == 1);
+  desk.step(FixRefused{refusal});
+  CHECK(desk.last<Say>().empty());
+  CHECK(desk.last<Record>().size() == 1);
+}
+
 TEST_CASE("a refused file is not emitted; when nothing is left the reason is said") {
   PilotDesk desk;
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.5, -15.3)), std::nullopt});
@@ -203,7 +229,7 @@ TEST_CASE("fixes that are old, of another glider or far inside the land are refu
 TEST_CASE("a clock that differs by more than five minutes: planned, held, said; clock_skew_ok accepts it") {
   for (const bool ok : {false, true}) {
     PilotDesk desk;
-    desk.step(MissionChanged{PilotDesk::mission_to_goal(), "yaml", "sha-2", ok, "start"});
+    desk.step(MissionChanged{{{PilotDesk::mission_to_goal(), "yaml", "sha-2"}}, ok, "start"});
     desk.surface_and_dive(28.4, -15.3, "0007.0002");
     desk.wait(Seconds{4 * 3600});
     auto s = PilotDesk::at_surface(desk.heard(28.5, -15.3));
@@ -221,7 +247,7 @@ TEST_CASE("a new mission is in force at the next surfacing, not before") {
   auto moved = PilotDesk::mission_to_goal();
   moved.goal = geo_point(29.5, -16);
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.5, -15.3)), std::nullopt});
-  desk.step(MissionChanged{moved, "yaml 2", "sha-2", false, "SIGHUP"});
+  desk.step(MissionChanged{{{moved, "yaml 2", "sha-2"}}, false, "SIGHUP"});
   CHECK(desk.pilot.mission()->goal == PilotDesk::mission_to_goal().goal);
   desk.wait(Seconds{300});
   desk.step(DiveBegan{});
@@ -237,6 +263,20 @@ TEST_CASE("inside the goal radius the mission has arrived and asks for the stati
   CHECK(desk.pilot.arrived());
   CHECK(said(desk.effects.back(), "arrived"));
   CHECK(desk.last<BeginPlanning>()[0].request.purpose == PlanningRequest::Purpose::station);
+}
+
+TEST_CASE("at the goal the mission that follows takes over at once") {
+  PilotDesk desk;
+  auto onward = PilotDesk::mission_to_goal();
+  onward.name = "leg-3";
+  onward.goal = geo_point(29.9, -15.9);
+  desk.step(MissionChanged{{{PilotDesk::mission_to_goal(), "yaml", "sha-1"}, {onward, "yaml 3", "sha-3"}}, false, "start"});
+  desk.step(SurfacingHeard{desk.heard(29.16, -15.5), std::nullopt});
+  CHECK(said(desk.effects.back(), "arrived"));
+  CHECK_FALSE(desk.pilot.arrived());
+  const auto& request = desk.last<BeginPlanning>()[0].request;
+  CHECK(request.purpose == PlanningRequest::Purpose::goal);
+  CHECK(std::get<planning::PointGoal>(request.problem.goal).at == onward.goal);
 }
 
 TEST_CASE("a glider that drifted more than a kilometre while our file is queued gets a newly proven one") {

@@ -60,10 +60,10 @@ struct Flight {
 
 /// Most stints that a list is flown for.
 inline constexpr int kMostStints = 60;
-/// Longest step of the integrator. The midpoint rule errs by (dt²/24)·|d²c/dt²| per unit of speed along the track: with
-/// currents of 1 m/s that turn within 6 h (the sharpest a forecast holds) 60 s give 5e-5 of the way, and the yo of a
-/// 200 m dive is sampled every 9 m. At 5 m/s, the largest speed that is not refused, neighbours are 320 m apart, at
-/// 3.5 m/s 228 m: a track point every 250 m wherever the ocean is plausible.
+/// Longest step of the integrator. On a circle of period P the midpoint rule lags by (2π·dt/P)²/6 of the way: 60 s in an
+/// eddy that turns within 6 h, sharper than any forecast holds, cost 5e-5; the yo of a 200 m dive is sampled every 9 m.
+/// At 5 m/s, the largest current that is not refused, neighbours are 320 m apart, at 3.5 m/s 228 m: a track point every
+/// 250 m wherever the ocean is plausible.
 inline constexpr double kStep = 60.0;
 
 /// Flies the list by the law of product.md 6 ("From headings to waypoints"), written here a second time on purpose:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cerrno>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -96,6 +97,12 @@ class Files {
   [[nodiscard]] virtual FileResult<std::string> read(const std::string& path, std::size_t at_most) = 0;
   [[nodiscard]] virtual FileResult<FileStat> stat(const std::string& path) = 0;
   [[nodiscard]] virtual FileResult<std::unique_ptr<Mapping>> map(const std::string& path) = 0;
+  /// Reads an inherited descriptor to its end: a child's standard input (0) and the file that it was handed (3). EFBIG
+  /// beyond `at_most`. A twin without descriptors says ENOSYS.
+  [[nodiscard]] virtual FileResult<std::string> read_descriptor(int descriptor, std::size_t at_most) {
+    static_cast<void>(at_most);
+    return unexpected(FileError{"read", "descriptor " + std::to_string(descriptor), ENOSYS});
+  }
   /// Existing files that match a shell pattern, sorted; a path without wildcard gives itself when it exists.
   [[nodiscard]] virtual std::vector<std::string> glob(const std::string& pattern) = 0;
   /// A path for scratch files of this process, e.g. /tmp or $TMPDIR.

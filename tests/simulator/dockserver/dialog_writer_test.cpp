@@ -225,13 +225,14 @@ TEST_CASE("real data: waypoint lines print again, and range and bearing follow f
     ++count;
     if (vehicle != "koskelo" || !dr || range < 400) continue;
     // Range and bearing are computed from a position of their own moment, up to a minute of surface drift beside the
-    // printed one: 6 m. The rotation measured there is 9.43° to 9.49° (slocum.md 4.2), and the print is floored.
+    // printed one: 6 m. The rotation measured there in flight data is 9.43° to 9.49° (slocum.md 4.2); whether the print
+    // floors or rounds the degree these lines leave open by half a degree, so either end is taken.
     constexpr double kDrift = 6;
     const double slack = in_degrees(Radians{kDrift / range}) + 0.03;
     const auto way = geodesic(*dr, at);
     const double printed = simulator::LocalFrame{degrees(9.46)}.local_bearing_deg(way.departing);
     const double over = std::remainder(printed - bearing, 360.0);
-    CHECK(over > -slack);
+    CHECK(over > -0.5 - slack);
     CHECK(over < 1 + slack);
     CHECK(std::fabs(way.length.si() * simulator::grid_scale(*dr) - (range + 0.5)) < kDrift + 0.5);
     ++checked;

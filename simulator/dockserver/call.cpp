@@ -60,7 +60,7 @@ std::optional<double> Call::next_s() const {
 }
 
 std::string Call::dockzr(double now_s) {
-  sending_ = folder_->contents();
+  sending_ = folder_->contents(instant_at(now_s));
   if (sending_.empty()) {
     outcome_.note = "to-glider was empty";
     if (setup_.reread_always) plan(now_s + kKeyAfter, What::reread);

@@ -18,8 +18,8 @@ struct OfferedFile {
 class ToGlider {
  public:
   virtual ~ToGlider() = default;
-  /// What lies there now, by name. Folders and names that start with a dot are not seen, as `*` does not match them.
-  virtual std::vector<OfferedFile> contents() = 0;
+  /// What lies there at `now`, by name. Folders and names that start with a dot are not seen, as `*` does not match them.
+  virtual std::vector<OfferedFile> contents(Instant now) = 0;
   /// The transfer of this file ended: archive the bytes that were sent and unlink the name, whatever lies under it now.
   virtual void sent(const OfferedFile& file, Instant when) = 0;
 };
@@ -28,7 +28,7 @@ class ToGlider {
 class MemoryToGlider final : public ToGlider {
  public:
   void offer(std::string name, std::string bytes) { files_[std::move(name)] = std::move(bytes); }
-  std::vector<OfferedFile> contents() override {
+  std::vector<OfferedFile> contents(Instant) override {
     std::vector<OfferedFile> all;
     for (const auto& [name, bytes] : files_) all.push_back({name, bytes});
     return all;

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/expected.hpp"
+#include "daemon/world/files.hpp"
+#include "simulator/dockserver/to_glider.hpp"
+
+namespace glidehelm::simulator {
+
+/// Why a dockserver folder cannot be used.
+struct FolderError {
+  std::string what;
+  [[nodiscard]] const std::string& message() const { return what; }
+};
+
+/// The marker that a folder is glidersim's own: a daemon on a simulated clock writes nowhere else (product.md 4).
+inline constexpr const char* kMarker = ".glidersim";
+
+/// A dockserver folder on disk: the marker file, to-glider and archive. `make` creates what is absent; a folder that
+/// exists without the marker and holds anything belongs to somebody and is refused.
+class DockFolder final : public ToGlider {
+ public:
+  static Expected<std::unique_ptr<DockFolder>, FolderError> make(world::Files& files, const std::string& folder);
+
+  std::vector<OfferedFile> contents(Instant now) override;
+  void sent(const OfferedFile& file, Instant when) override;
+
+  /// Until `when`, `contents` keeps answering what `remember` last saw: files that computing put there later than it
+  /// started are not there yet when its time is charged. `remember` does nothing while news are hidden at `now`.
+  void remember(Instant now);
+  void hide_news_until(Instant when) { hidden_until_ = when; }
+  /// The last thing that went wrong with the files, once; empty when nothing did.
+  std::string take_trouble();
+
+ private:
+  DockFolder() = default;
+  std::vector<OfferedFile> look();
+  std::unique_ptr<world::Folder> to_glider_, archive_;
+  std::vector<OfferedFile> remembered_;
+  std::optional<Instant> hidden_until_;
+  std::string trouble_;
+};
+
+}  // namespace glidehelm::simulator

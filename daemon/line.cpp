@@ -27,9 +27,10 @@ Line::~Line() {
 
 Expected<Done, world::NetError> Line::start() {
   if (const auto* listen = std::get_if<config::Listen>(&line_)) {
-    auto listener = world_.net.listen_tcp(listen->at.host, listen->at.port, [this, alive = alive_](std::shared_ptr<world::Stream> stream) {
-      if (*alive) take(std::move(stream));
-    });
+    auto listener = world_.net.listen_tcp(listen->at.host, listen->at.port,
+                                          [this, alive = alive_](std::shared_ptr<world::Stream> stream) {
+                                            if (*alive) take(std::move(stream));
+                                          });
     if (!listener) return unexpected(listener.error());
     listener_ = std::move(listener).value();
   } else {
@@ -39,7 +40,8 @@ Expected<Done, world::NetError> Line::start() {
 }
 
 void Line::take(std::shared_ptr<world::Stream> stream) {
-  if (const auto* listen = std::get_if<config::Listen>(&line_); listen != nullptr && !listen->lets_in(host_of(stream->peer()))) {
+  if (const auto* listen = std::get_if<config::Listen>(&line_);
+      listen != nullptr && !listen->lets_in(host_of(stream->peer()))) {
     handlers_.trouble("connection from " + stream->peer() + " is not in `allow`: closed");
     stream->close();
     return;

@@ -24,7 +24,8 @@ class Line {
     std::function<void(std::uint64_t connection, std::string_view peer, bool replaced)> opened;
     std::function<void(std::uint64_t connection, std::string_view bytes)> bytes;
     std::function<void(std::uint64_t connection, std::string_view reason)> closed;
-    std::function<void(std::string_view problem)> trouble;  ///< a dial failed, a peer is not allowed: said once per cause
+    std::function<void(std::string_view problem)>
+        trouble;  ///< a dial failed, a peer is not allowed: said once per cause
   };
 
   Line(world::World world, config::Line line, Handlers handlers);

@@ -11,11 +11,16 @@ namespace {
 
 std::string_view level_word(mission::Level level) {
   switch (level) {
-    case mission::Level::info: return "info ";
-    case mission::Level::note: return "note ";
-    case mission::Level::alert: return "ALERT";
-    case mission::Level::page: return "PAGE ";
-    case mission::Level::clear: return "clear";
+    case mission::Level::info:
+      return "info ";
+    case mission::Level::note:
+      return "note ";
+    case mission::Level::alert:
+      return "ALERT";
+    case mission::Level::page:
+      return "PAGE ";
+    case mission::Level::clear:
+      return "clear";
   }
   return "?";
 }
@@ -39,8 +44,8 @@ std::string printable(std::string_view text) {
 Log::Log(std::shared_ptr<spdlog::logger> sink, const world::Clock& clock) : sink_{std::move(sink)}, clock_{clock} {}
 
 void Log::fact(mission::Level level, std::string_view glider, std::string_view text) const {
-  const auto line = fmt::format("{} {}{} {:<9} {}", utc_text(clock_.utc()), clock_.simulated() ? "SIMULATED " : "", level_word(level),
-                                glider.empty() ? "-" : glider, printable(text));
+  const auto line = fmt::format("{} {}{} {:<9} {}", utc_text(clock_.utc()), clock_.simulated() ? "SIMULATED " : "",
+                                level_word(level), glider.empty() ? "-" : glider, printable(text));
   sink_->log(level == mission::Level::info || level == mission::Level::clear ? spdlog::level::info
              : level == mission::Level::note                                 ? spdlog::level::warn
                                                                              : spdlog::level::err,

@@ -24,8 +24,9 @@ class [[nodiscard]] Expected {
   using value_type = T;
   using error_type = E;
 
-  Expected(T value) : state_{std::in_place_index<0>, std::move(value)} {}                  // NOLINT(google-explicit-constructor)
-  Expected(Unexpected<E> error) : state_{std::in_place_index<1>, std::move(error.error)} {}  // NOLINT(google-explicit-constructor)
+  Expected(T value) : state_{std::in_place_index<0>, std::move(value)} {}  // NOLINT(google-explicit-constructor)
+  Expected(Unexpected<E> error)
+      : state_{std::in_place_index<1>, std::move(error.error)} {}  // NOLINT(google-explicit-constructor)
 
   [[nodiscard]] bool has_value() const { return state_.index() == 0; }
   explicit operator bool() const { return has_value(); }

@@ -53,7 +53,8 @@ std::optional<Instant> utc_from_civil(int year, int month, int day, int hour, in
   if (!date.ok()) return std::nullopt;
   if (hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0.0 && second < 60.0)) return std::nullopt;
   const auto midnight = time_point_cast<milliseconds>(sys_days{date});
-  return Instant{midnight + hours{hour} + minutes{minute} + milliseconds{static_cast<std::int64_t>(second * 1e3 + 0.5)}};
+  return Instant{midnight + hours{hour} + minutes{minute} +
+                 milliseconds{static_cast<std::int64_t>(second * 1e3 + 0.5)}};
 }
 
 std::optional<Instant> utc_from_text(std::string_view text) {

@@ -26,30 +26,30 @@ struct Moment {
 struct PlanningRequest {
   enum class Purpose { goal, station };
   std::uint64_t id{};
-  std::string surfacing;                      ///< key of the surfacing that the file will answer
+  std::string surfacing;  ///< key of the surfacing that the file will answer
   Purpose purpose{Purpose::goal};
   planning::Problem problem;
-  std::string method;                         ///< of planning.method
-  std::optional<Current> believed_current;    ///< ĉ of the first stint: the measured DAC in the true frame
+  std::string method;                       ///< of planning.method
+  std::optional<Current> believed_current;  ///< ĉ of the first stint: the measured DAC in the true frame
   int slot{10};
   int max_waypoints{8};
   std::optional<Metres> list_radius;
   model::AtEnd at_end{model::AtEnd::loop};
-  Instant stamp;                              ///< for the file's comment
-  Seconds horizon_wanted{};                   ///< 0 = automatic: 3 × the still-water time
+  Instant stamp;             ///< for the file's comment
+  Seconds horizon_wanted{};  ///< 0 = automatic: 3 × the still-water time
   friend bool operator==(const PlanningRequest&, const PlanningRequest&) = default;
 };
 
 /// A plan with the file that flies it and what that file promises.
 struct Candidate {
   std::uint64_t request{};
-  std::uint64_t number{};                     ///< within the request, from 1; higher is better
+  std::uint64_t number{};  ///< within the request, from 1; higher is better
   planning::Plan plan;
   model::WaypointList list;
   safety::Promise promise;
   std::string file_name, file_bytes;
-  double horizon_s{};                         ///< epoch second to which plan and list were flown
-  std::string forecast;                       ///< provenance: cycle and hash
+  double horizon_s{};    ///< epoch second to which plan and list were flown
+  std::string forecast;  ///< provenance: cycle and hash
   friend bool operator==(const Candidate&, const Candidate&) = default;
 };
 
@@ -120,21 +120,21 @@ struct FolderSeen {
 enum class Timer { budget, deadline, late_note, late_alert, late_page };
 struct TimerFired {
   Timer timer{};
-  std::uint64_t serial{};                     ///< of the SetTimer that asked for it; an older one is ignored
+  std::uint64_t serial{};  ///< of the SetTimer that asked for it; an older one is ignored
   friend bool operator==(const TimerFired&, const TimerFired&) = default;
 };
 /// A mission with the file it was read from, so that a replay of the journal reads it again.
 struct MissionText {
   Mission mission;
-  std::string yaml;                           ///< the mission in full, every default written out
-  std::string sha256;                         ///< of the file as the pilot wrote it
+  std::string yaml;    ///< the mission in full, every default written out
+  std::string sha256;  ///< of the file as the pilot wrote it
   friend bool operator==(const MissionText&, const MissionText&) = default;
 };
 /// A reload, or the start: in force at the next surfacing.
 struct MissionChanged {
-  std::vector<MissionText> chain;             ///< the first begins, the next takes over at its goal (`after_goal`); empty: none
+  std::vector<MissionText> chain;  ///< the first begins, the next takes over at its goal (`after_goal`); empty: none
   bool clock_skew_ok{};
-  std::string by;                             ///< "start", "SIGHUP", "uid 1000"
+  std::string by;  ///< "start", "SIGHUP", "uid 1000"
   friend bool operator==(const MissionChanged&, const MissionChanged&) = default;
 };
 /// The process starts again and this journal was replayed: what became of an emission that was under way.
@@ -145,8 +145,8 @@ struct Restarted {
 
 struct Event {
   Moment now;
-  std::variant<SurfacingHeard, FixRefused, WindowHeard, WindowExtended, DiveBegan, TransferHeard, ListReread, CandidateFound,
-               PlanningEnded, Judged, EmissionEnded, FolderSeen, TimerFired, MissionChanged, Restarted>
+  std::variant<SurfacingHeard, FixRefused, WindowHeard, WindowExtended, DiveBegan, TransferHeard, ListReread,
+               CandidateFound, PlanningEnded, Judged, EmissionEnded, FolderSeen, TimerFired, MissionChanged, Restarted>
       what;
   friend bool operator==(const Event&, const Event&) = default;
 };
@@ -171,10 +171,10 @@ struct Verify {
 /// Make the file visible, once. Nothing but a VerifiedFile can be in here.
 struct Emit {
   safety::VerifiedFile file;
-  std::string surfacing;                      ///< key: at most one emission (and its recorded replacements) per key
+  std::string surfacing;  ///< key: at most one emission (and its recorded replacements) per key
   std::string plan_id;
   Tick deadline;
-  bool replaces{};                            ///< exchange for our own file that is still queued
+  bool replaces{};  ///< exchange for our own file that is still queued
   friend bool operator==(const Emit&, const Emit&) = default;
 };
 struct InspectFolder {
@@ -201,13 +201,14 @@ struct Say {
 };
 /// A decision to keep: appended to the journal beside the event that led to it.
 struct Record {
-  std::string kind;                           ///< "surfacing", "refusal", "duplicate", "plan", "verdict", "emission", "keep", "mission"
-  std::string surfacing;                      ///< key, empty when there is none
+  std::string kind;       ///< "surfacing", "refusal", "duplicate", "plan", "verdict", "emission", "keep", "mission"
+  std::string surfacing;  ///< key, empty when there is none
   std::string text;
   friend bool operator==(const Record&, const Record&) = default;
 };
 
-using Effect = std::variant<BeginPlanning, StopPlanning, Verify, Emit, InspectFolder, SetTimer, CancelTimer, Say, Record>;
+using Effect =
+    std::variant<BeginPlanning, StopPlanning, Verify, Emit, InspectFolder, SetTimer, CancelTimer, Say, Record>;
 using Effects = std::vector<Effect>;
 
 }  // namespace glidehelm::mission

@@ -14,7 +14,8 @@ Radians utm_convergence(GeoPoint p) {
   return Radians{std::atan(std::tan(p.lon.radians() - central) * std::sin(p.lat.radians()))};
 }
 
-FrameRotation frame_rotation(std::optional<Radians> configured, std::optional<Radians> magnetic_variation, GeoPoint origin) {
+FrameRotation frame_rotation(std::optional<Radians> configured, std::optional<Radians> magnetic_variation,
+                             GeoPoint origin) {
   if (configured) return {*configured, FrameRotation::From::configured};
   if (magnetic_variation && std::isfinite(magnetic_variation->si()))
     return {utm_convergence(origin) - *magnetic_variation, FrameRotation::From::magnetic_variation};

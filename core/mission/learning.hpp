@@ -21,7 +21,8 @@ Radians utm_convergence(GeoPoint p);
 
 /// The rotation in order of trust: configured; from `m_gps_mag_var` (positive west) and the convergence at `origin`:
 /// r = −variation + γ; zero when the dialog tells nothing. `origin` is the position of the mission's local frame.
-FrameRotation frame_rotation(std::optional<Radians> configured, std::optional<Radians> magnetic_variation, GeoPoint origin);
+FrameRotation frame_rotation(std::optional<Radians> configured, std::optional<Radians> magnetic_variation,
+                             GeoPoint origin);
 
 /// A velocity of the local frame in true east and north: the only place where a `LocalVelocity` becomes a `Current`.
 /// east = x·cos r + y·sin r, north = −x·sin r + y·cos r (slocum.md 4.2).

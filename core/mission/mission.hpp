@@ -23,15 +23,15 @@ enum class Interpolation { nearest, linear, cubic, akima };
 
 /// One analytic generator of currents (product.md 5).
 struct AnalyticSpec {
-  std::string kind;                       ///< constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet, gaussians
+  std::string kind;  ///< constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet, gaussians
   GeoPoint origin;
   Metres length_scale{1.0};
   MetresPerSecond speed_scale{1.0};
-  std::optional<Seconds> time_scale;      ///< default length/speed
-  std::optional<Instant> t0;              ///< default: the start time
-  bool south{};                           ///< the sign of the southern hemisphere (Thesis 5.4–5.5)
-  std::vector<std::pair<std::string, double>> params;   ///< by name, in the order of the file
-  std::vector<std::vector<double>> gaussians;           ///< rows of params.list
+  std::optional<Seconds> time_scale;                   ///< default length/speed
+  std::optional<Instant> t0;                           ///< default: the start time
+  bool south{};                                        ///< the sign of the southern hemisphere (Thesis 5.4–5.5)
+  std::vector<std::pair<std::string, double>> params;  ///< by name, in the order of the file
+  std::vector<std::vector<double>> gaussians;          ///< rows of params.list
   friend bool operator==(const AnalyticSpec&, const AnalyticSpec&) = default;
 };
 
@@ -41,60 +41,60 @@ struct Currents {
   std::vector<AnalyticSpec> analytic;
   OutsideTime outside_time{OutsideTime::hold};
   Interpolation interpolation{Interpolation::linear};
-  std::string east_variable, north_variable;   ///< empty: recognised
-  std::optional<Instant> time_epoch;           ///< for files whose time axis has no units
+  std::string east_variable, north_variable;  ///< empty: recognised
+  std::optional<Instant> time_epoch;          ///< for files whose time axis has no units
   double coastal_fill_cells{1.5};
   friend bool operator==(const Currents&, const Currents&) = default;
 };
 
 /// One mission as its YAML file says it, defaults filled in (product.md 5). Units are in the types; keys in the comments.
 struct Mission {
-  std::string name;                            ///< name
-  std::string glider;                          ///< glider, lower case
-  std::string slocum_mission;                  ///< glider_mission: the .mi file that must be running; empty: any
-  GeoPoint goal;                               ///< goal.lat_deg, goal.lon_deg
-  Metres goal_radius{2000};                    ///< goal.radius_m
-  std::optional<GeoPoint> start;               ///< start.lat_deg, start.lon_deg (plan and rehearse only)
-  std::optional<Instant> start_time;           ///< start.time
+  std::string name;                   ///< name
+  std::string glider;                 ///< glider, lower case
+  std::string slocum_mission;         ///< glider_mission: the .mi file that must be running; empty: any
+  GeoPoint goal;                      ///< goal.lat_deg, goal.lon_deg
+  Metres goal_radius{2000};           ///< goal.radius_m
+  std::optional<GeoPoint> start;      ///< start.lat_deg, start.lon_deg (plan and rehearse only)
+  std::optional<Instant> start_time;  ///< start.time
 
-  MetresPerSecond horizontal_speed{0.30};      ///< vehicle.horizontal_speed_m_per_s
-  Radians glide_angle{degrees(26)};            ///< vehicle.glide_angle_deg
-  Metres dive_depth{200};                      ///< vehicle.dive_depth_m
-  Metres climb_to{20};                         ///< vehicle.climb_to_m
-  int current_correction{1};                   ///< vehicle.current_correction
-  std::optional<Radians> frame_rotation;       ///< vehicle.local_frame_rotation_deg; none: learned, 0 until then
+  MetresPerSecond horizontal_speed{0.30};  ///< vehicle.horizontal_speed_m_per_s
+  Radians glide_angle{degrees(26)};        ///< vehicle.glide_angle_deg
+  Metres dive_depth{200};                  ///< vehicle.dive_depth_m
+  Metres climb_to{20};                     ///< vehicle.climb_to_m
+  int current_correction{1};               ///< vehicle.current_correction
+  std::optional<Radians> frame_rotation;   ///< vehicle.local_frame_rotation_deg; none: learned, 0 until then
 
-  Seconds stint{4 * 3600.0};                   ///< schedule.stint_h, or from schedule.half_cycles
-  Seconds first_stint{4 * 3600.0};             ///< schedule.first_stint_h
-  Seconds surface{15 * 60.0};                  ///< schedule.surface_min
-  std::optional<int> half_cycles;              ///< schedule.half_cycles
+  Seconds stint{4 * 3600.0};        ///< schedule.stint_h, or from schedule.half_cycles
+  Seconds first_stint{4 * 3600.0};  ///< schedule.first_stint_h
+  Seconds surface{15 * 60.0};       ///< schedule.surface_min
+  std::optional<int> half_cycles;   ///< schedule.half_cycles
 
   Currents currents;
 
-  std::string method{"best"};                  ///< planning.method
-  int headings{18};                            ///< planning.headings
-  std::optional<Metres> cell;                  ///< planning.cell_km; none: half a stint through still water
-  Seconds budget{20};                          ///< planning.budget_s
-  std::optional<Seconds> horizon;              ///< planning.horizon_h; none: 3 × the still-water time
-  std::uint64_t seed{1};                       ///< planning.seed
+  std::string method{"best"};      ///< planning.method
+  int headings{18};                ///< planning.headings
+  std::optional<Metres> cell;      ///< planning.cell_km; none: half a stint through still water
+  Seconds budget{20};              ///< planning.budget_s
+  std::optional<Seconds> horizon;  ///< planning.horizon_h; none: 3 × the still-water time
+  std::uint64_t seed{1};           ///< planning.seed
 
-  std::string coast_file;                      ///< safety.coast; empty: the model's mask, with a warning
-  Metres min_distance_to_coast{2000};          ///< safety.min_distance_to_coast_m
-  Metres depth_margin{20};                     ///< safety.depth_margin_m: under each yo; not judged before bathymetry is read
+  std::string coast_file;              ///< safety.coast; empty: the model's mask, with a warning
+  Metres min_distance_to_coast{2000};  ///< safety.min_distance_to_coast_m
+  Metres depth_margin{20};             ///< safety.depth_margin_m: under each yo; not judged before bathymetry is read
   std::vector<chart::Area> keep_in, keep_out;  ///< safety.keep_in, safety.keep_out
   std::optional<Metres> max_wpt_distance;      ///< safety.max_wpt_distance_m: the abend limit of the glider's mission
 
-  int slot{10};                                ///< list.slot: NN of goto_lNN.ma
-  int max_waypoints{8};                        ///< list.max_waypoints
-  std::optional<Metres> list_radius;           ///< list.radius_m; none: 10 % of the median leg
-  model::AtEnd at_end{model::AtEnd::loop};     ///< list.at_end
+  int slot{10};                             ///< list.slot: NN of goto_lNN.ma
+  int max_waypoints{8};                     ///< list.max_waypoints
+  std::optional<Metres> list_radius;        ///< list.radius_m; none: 10 % of the median leg
+  model::AtEnd at_end{model::AtEnd::loop};  ///< list.at_end
 
-  Seconds window_max{15 * 60.0};               ///< window.max_min
-  Seconds dockzr_after{120};                   ///< window.dockzr_after_s
-  bool emit_on_connection{};                   ///< window.emit_on: connection (true) or at_surface
+  Seconds window_max{15 * 60.0};  ///< window.max_min
+  Seconds dockzr_after{120};      ///< window.dockzr_after_s
+  bool emit_on_connection{};      ///< window.emit_on: connection (true) or at_surface
 
-  Approval approval{Approval::manual};         ///< approval.mode
-  std::string after_goal;                      ///< after_goal: "" stays at the goal, "next NAME" hands over
+  Approval approval{Approval::manual};  ///< approval.mode
+  std::string after_goal;               ///< after_goal: "" stays at the goal, "next NAME" hands over
 
   friend bool operator==(const Mission&, const Mission&) = default;
 };

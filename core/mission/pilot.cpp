@@ -13,14 +13,14 @@ namespace glidehelm::mission {
 
 namespace {
 
-constexpr std::size_t kRemembered = 16;               // fixes kept for recognising repeats
-constexpr Seconds kEmitBeforeDeadline{30};            // product.md 4.6
-constexpr double kStrongestCurrent = 2.5;             // m/s, for the jump limit: Gulf Stream with a margin
-constexpr double kMoveForReplacement = 1000.0;        // m, product.md 4.2
-constexpr double kWaterChange = 0.005;                // m/s: 70 m over a stint of 4 h
-constexpr double kInlandRefused = 500.0;              // m, product.md 4.2
-constexpr Seconds kSkewHeld{300};                     // product.md 4, Clocks
-constexpr Seconds kSecondFixApart{60};                // trust.md I-5
+constexpr std::size_t kRemembered = 16;         // fixes kept for recognising repeats
+constexpr Seconds kEmitBeforeDeadline{30};      // product.md 4.6
+constexpr double kStrongestCurrent = 2.5;       // m/s, for the jump limit: Gulf Stream with a margin
+constexpr double kMoveForReplacement = 1000.0;  // m, product.md 4.2
+constexpr double kWaterChange = 0.005;          // m/s: 70 m over a stint of 4 h
+constexpr double kInlandRefused = 500.0;        // m, product.md 4.2
+constexpr Seconds kSkewHeld{300};               // product.md 4, Clocks
+constexpr Seconds kSecondFixApart{60};          // trust.md I-5
 
 Tick later(Tick t, Seconds dt) { return t + std::chrono::duration_cast<Tick::duration>(dt); }
 
@@ -38,14 +38,22 @@ std::string clock_text(Instant t) { return utc_text(t); }
 
 std::string_view word(Stage stage) {
   switch (stage) {
-    case Stage::idle: return "idle";
-    case Stage::planning: return "planning";
-    case Stage::proposed: return "proposed";
-    case Stage::emitting: return "emitting";
-    case Stage::queued: return "queued";
-    case Stage::kept: return "kept";
-    case Stage::stood_down: return "stood down";
-    case Stage::dived: return "under water";
+    case Stage::idle:
+      return "idle";
+    case Stage::planning:
+      return "planning";
+    case Stage::proposed:
+      return "proposed";
+    case Stage::emitting:
+      return "emitting";
+    case Stage::queued:
+      return "queued";
+    case Stage::kept:
+      return "kept";
+    case Stage::stood_down:
+      return "stood down";
+    case Stage::dived:
+      return "under water";
   }
   return "?";
 }
@@ -117,10 +125,11 @@ std::optional<model::Refusal> Pilot::objection(const SurfacingHeard& e) {
   if (!equal_without_case(s.glider, glider_))
     return refuse("S2", fmt::format("the dialog is of glider {}, this line is configured for {}", s.glider, glider_));
   if (last_ && s.fix_taken <= last_->fix_taken)
-    return refuse("S6", fmt::format("the fix of {} is not newer than the last accepted one of {}", clock_text(s.fix_taken),
-                                    clock_text(last_->fix_taken)));
+    return refuse("S6", fmt::format("the fix of {} is not newer than the last accepted one of {}",
+                                    clock_text(s.fix_taken), clock_text(last_->fix_taken)));
   if (dived_at_ && s.fix_taken < *dived_at_)
-    return refuse("S6", fmt::format("the fix of {} is from before the dive at {}", clock_text(s.fix_taken), clock_text(*dived_at_)));
+    return refuse("S6", fmt::format("the fix of {} is from before the dive at {}", clock_text(s.fix_taken),
+                                    clock_text(*dived_at_)));
   if (e.coast_distance && e.coast_distance->si() < -kInlandRefused)
     return refuse("S5", fmt::format("the fix {} lies {:.1f} km inside the coastline; allowed is 0.5 km", place(s.fix),
                                     -e.coast_distance->si() / 1000));
@@ -131,7 +140,9 @@ std::optional<model::Refusal> Pilot::objection(const SurfacingHeard& e) {
 std::optional<model::Refusal> Pilot::jump(const model::Surfacing& s) {
   if (!last_) return std::nullopt;
   const double speed = 1.2 * ((mission_ ? mission_->horizontal_speed.si() : 0.5) + kStrongestCurrent);
-  const auto reach = [&](const model::Surfacing& from) { return speed * between(from.fix_taken, s.fix_taken).count() + 1000.0; };
+  const auto reach = [&](const model::Surfacing& from) {
+    return speed * between(from.fix_taken, s.fix_taken).count() + 1000.0;
+  };
   const double moved = distance(last_->fix, s.fix).si();
   if (moved <= reach(*last_)) {
     quarantined_.reset();
@@ -139,16 +150,21 @@ std::optional<model::Refusal> Pilot::jump(const model::Surfacing& s) {
   }
   if (quarantined_ && between(quarantined_->fix_taken, s.fix_taken) >= kSecondFixApart &&
       distance(quarantined_->fix, s.fix).si() <= reach(*quarantined_)) {
-    say(Level::clear, "jump", fmt::format("a second fix at {} confirms the jump of {:.0f} km", place(s.fix), moved / 1000));
+    say(Level::clear, "jump",
+        fmt::format("a second fix at {} confirms the jump of {:.0f} km", place(s.fix), moved / 1000));
     quarantined_.reset();
     return std::nullopt;
   }
   quarantined_ = s;
-  return model::Refusal{"S5",
-                        fmt::format("the fix {} is {:.1f} km from the last one ({} earlier); at most {:.1f} km are possible. "
-                                    "It is taken when a second fix at least a minute later agrees",
-                                    place(s.fix), moved / 1000, hours(between(last_->fix_taken, s.fix_taken)), reach(*last_) / 1000),
-                        s.glider, s.heard, s.lat_ddmm, s.lon_ddmm};
+  return model::Refusal{
+      "S5",
+      fmt::format("the fix {} is {:.1f} km from the last one ({} earlier); at most {:.1f} km are possible. "
+                  "It is taken when a second fix at least a minute later agrees",
+                  place(s.fix), moved / 1000, hours(between(last_->fix_taken, s.fix_taken)), reach(*last_) / 1000),
+      s.glider,
+      s.heard,
+      s.lat_ddmm,
+      s.lon_ddmm};
 }
 
 /// The same fix printed again changes nothing but what the block says beside it: mission, window, water velocity.
@@ -170,14 +186,16 @@ void Pilot::take_repeat(const model::Surfacing& s) {
 bool Pilot::plan_again_for_water(const model::Surfacing& s) {
   const auto water = believed_current(s, rotation_.clockwise);
   if (!water || stage_ != Stage::planning || !mission_) return false;
-  const double change = believed_ ? std::hypot(water->east.si() - believed_->east.si(), water->north.si() - believed_->north.si())
-                                  : water->speed().si();
+  const double change =
+      believed_ ? std::hypot(water->east.si() - believed_->east.si(), water->north.si() - believed_->north.si())
+                : water->speed().si();
   if (change < kWaterChange) return false;
   believed_ = water;
   last_->water = s.water;
   last_->water_is_final = s.water_is_final;
-  say(Level::info, "water", fmt::format("the measured current became {:.2f} m/s towards {:03.0f} deg: planning again", water->speed().si(),
-                                        Course::of(water->east.si(), water->north.si()).degrees()));
+  say(Level::info, "water",
+      fmt::format("the measured current became {:.2f} m/s towards {:03.0f} deg: planning again", water->speed().si(),
+                  Course::of(water->east.si(), water->north.si()).degrees()));
   plan_again();
   return true;
 }
@@ -202,7 +220,8 @@ void Pilot::note_dialog(const model::Surfacing& s) {
   if (!s.segment.empty()) segment_ = s.segment;
   if (s.at_surface) {
     at_surface_seen_ = true;
-    const bool named = mission_ && (mission_->slocum_mission.empty() || equal_without_case(mission_->slocum_mission, s.mission));
+    const bool named =
+        mission_ && (mission_->slocum_mission.empty() || equal_without_case(mission_->slocum_mission, s.mission));
     mission_named_ = named;
     wrong_mission_ = named ? "" : s.mission;
   }
@@ -229,12 +248,14 @@ void Pilot::open_surfacing(const model::Surfacing& s) {
 
   rotation_ = frame_rotation(mission_ ? mission_->frame_rotation : std::nullopt, s.magnetic_variation, s.fix);
   believed_ = believed_current(s, rotation_.clockwise);
-  const Seconds skew{std::abs(static_cast<double>((s.curr_time.time_since_epoch() -
-                                                   std::chrono::floor<std::chrono::seconds>(s.heard.time_since_epoch()))
-                                                      .count()))};
+  const Seconds skew{std::abs(static_cast<double>(
+      (s.curr_time.time_since_epoch() - std::chrono::floor<std::chrono::seconds>(s.heard.time_since_epoch()))
+          .count()))};
   skew_.reset();
   if (skew > kSkewHeld && !skew_ok_)
-    skew_ = fmt::format("the glider's clock differs from ours by {:.0f} s; allowed are 300 s (clock_skew_ok: true accepts it)", skew.count());
+    skew_ = fmt::format(
+        "the glider's clock differs from ours by {:.0f} s; allowed are 300 s (clock_skew_ok: true accepts it)",
+        skew.count());
   greet(s, believed_);
   remember(s);
   record("surfacing", fmt::format("accepted fix {} taken {}", place(s.fix), clock_text(s.fix_taken)));
@@ -255,14 +276,16 @@ void Pilot::take_later_fix(const model::Surfacing& s) {
   const auto moved_from = planned_from_.value_or(s.fix);
   const double moved = distance(moved_from, s.fix).si();
   remember(s);
-  record("surfacing", fmt::format("later fix {} taken {}, {:.0f} m from the first", place(s.fix), clock_text(s.fix_taken), moved));
+  record("surfacing",
+         fmt::format("later fix {} taken {}, {:.0f} m from the first", place(s.fix), clock_text(s.fix_taken), moved));
   if (stage_ == Stage::dived) return;
   note_dialog(s);
   if (moved <= kMoveForReplacement || transfer_began_ || stage_ != Stage::queued) {
     emit_if_due();
     return;
   }
-  say(Level::info, "later-fix", fmt::format("the glider drifted {:.1f} km since the plan was made: planning again", moved / 1000));
+  say(Level::info, "later-fix",
+      fmt::format("the glider drifted {:.1f} km since the plan was made: planning again", moved / 1000));
   replacing_ = true;
   plan_again();
 }
@@ -282,8 +305,9 @@ void Pilot::greet(const model::Surfacing& s, std::optional<Current> measured) {
 /// Inside the goal radius the mission has arrived; `after_goal` hands over at once, as often as the glider is there already.
 void Pilot::arrive_if_there(const model::Surfacing& s) {
   while (mission_ && !arrived_ && distance(s.fix, mission_->goal) <= mission_->goal_radius) {
-    say(Level::info, "arrived", fmt::format("mission {} arrived: {:.1f} km from the goal", mission_->name,
-                                            distance(s.fix, mission_->goal).si() / 1000));
+    say(Level::info, "arrived",
+        fmt::format("mission {} arrived: {:.1f} km from the goal", mission_->name,
+                    distance(s.fix, mission_->goal).si() / 1000));
     if (chain_.size() < 2) {
       arrived_ = true;
       return;
@@ -317,8 +341,7 @@ void Pilot::on(const WindowExtended& e) {
 void Pilot::on(const DiveBegan&) {
   if (stage_ == Stage::idle || stage_ == Stage::dived) return;
   dived_at_ = now_.utc;
-  if (stage_ == Stage::planning || stage_ == Stage::proposed)
-    keep("dived", "the glider dived before a file was ready");
+  if (stage_ == Stage::planning || stage_ == Stage::proposed) keep("dived", "the glider dived before a file was ready");
   if (request_ != 0) out_.push_back(StopPlanning{request_});
   cancel_timer(Timer::deadline);
   cancel_timer(Timer::budget);
@@ -341,8 +364,8 @@ planning::Problem Pilot::problem_now() const {
   planning::Problem p;
   p.start = {last_->fix, epoch_seconds(last_->fix_taken)};
   p.goal = planning::PointGoal{m.goal, m.goal_radius};
-  p.glider = {glider_, m.horizontal_speed, last_->believed_speed.value_or(m.horizontal_speed), m.glide_angle,
-              m.dive_depth, m.climb_to, last_->current_correction.value_or(m.current_correction)};
+  p.glider = {glider_,      m.horizontal_speed, last_->believed_speed.value_or(m.horizontal_speed),      m.glide_angle,
+              m.dive_depth, m.climb_to,         last_->current_correction.value_or(m.current_correction)};
   p.schedule = {m.stint, m.first_stint, m.surface, m.surface};
   p.coast_margin = m.min_distance_to_coast;
   p.headings = m.headings;
@@ -428,7 +451,8 @@ safety::Dossier Pilot::dossier_for(const Candidate& c) const {
 
 void Pilot::on(const Judged& e) {
   if (e.request != request_ || stage_ != Stage::planning) return;
-  const auto ranked = std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& r) { return r.candidate.number == e.number; });
+  const auto ranked =
+      std::find_if(ranked_.begin(), ranked_.end(), [&](const Ranked& r) { return r.candidate.number == e.number; });
   if (ranked == ranked_.end()) return;
   ranked->proof = Ranked::Proof::refused;
   if (e.verdict) {
@@ -448,7 +472,8 @@ void Pilot::on(const Judged& e) {
     if (why.empty()) why = "the verdict is for other bytes";
     problem_ = why;
     record("verdict", fmt::format("candidate {} of {} refused: {}", e.number, ranked->candidate.plan.method, why));
-    say(Level::alert, "refused-file", fmt::format("the verifier refuses the {} plan: {}", ranked->candidate.plan.method, why));
+    say(Level::alert, "refused-file",
+        fmt::format("the verifier refuses the {} plan: {}", ranked->candidate.plan.method, why));
   }
   ask_verdict();
   emit_if_due();
@@ -474,7 +499,8 @@ std::optional<std::string> Pilot::reason_to_hold() const {
 void Pilot::emit_if_due() {
   if (stage_ != Stage::planning && stage_ != Stage::proposed) return;
   const bool last_call = now_.tick >= later(deadline_, -kEmitBeforeDeadline);
-  const bool asked = std::any_of(ranked_.begin(), ranked_.end(), [](const Ranked& r) { return r.proof == Ranked::Proof::asked; });
+  const bool asked =
+      std::any_of(ranked_.begin(), ranked_.end(), [](const Ranked& r) { return r.proof == Ranked::Proof::asked; });
   const bool nothing_better = planning_over_ && !asked;
   if (!nothing_better && !budget_over_ && !last_call) return;
   Ranked* best = best_proven();
@@ -491,25 +517,26 @@ void Pilot::emit_if_due() {
   }
   if (stage_ == Stage::proposed) return;
   const auto& plan = best->candidate.plan;
-  const std::string arrival = arrived_ ? "holding at the goal"
-                              : plan.reaches_goal()
-                                  ? fmt::format("arrives {} ({} from the fix)", clock_text(instant_at(plan.arrival_s)),
-                                                hours(Seconds{plan.arrival_s - epoch_seconds(last_->fix_taken)}))
-                                  : fmt::format("comes within {:.1f} km of the goal: {}", plan.remaining.si() / 1000, plan.reason);
+  const std::string arrival =
+      arrived_ ? "holding at the goal"
+      : plan.reaches_goal()
+          ? fmt::format("arrives {} ({} from the fix)", clock_text(instant_at(plan.arrival_s)),
+                        hours(Seconds{plan.arrival_s - epoch_seconds(last_->fix_taken)}))
+          : fmt::format("comes within {:.1f} km of the goal: {}", plan.remaining.si() / 1000, plan.reason);
   if (mission_->approval == Approval::manual || (mission_->approval == Approval::auto_if_safe && alerted_)) {
     stage_ = Stage::proposed;
     record("proposal", fmt::format("{} by {}, {}", best->candidate.file_name, plan.method, arrival));
-    say(Level::note, "proposed", fmt::format("proposal: {} by {}, {}; {}, nothing is emitted", best->candidate.file_name,
-                                             plan.method, arrival,
-                                             alerted_ && mission_->approval == Approval::auto_if_safe
-                                                 ? "approval.mode is auto-if-safe and there was an alert"
-                                                 : "approval.mode is manual"));
+    say(Level::note, "proposed",
+        fmt::format("proposal: {} by {}, {}; {}, nothing is emitted", best->candidate.file_name, plan.method, arrival,
+                    alerted_ && mission_->approval == Approval::auto_if_safe
+                        ? "approval.mode is auto-if-safe and there was an alert"
+                        : "approval.mode is manual"));
     return;
   }
   stage_ = Stage::emitting;
-  say(Level::info, "plan", fmt::format("plan by {}: {}, next surfacing expected at {}, {:.0f} s left in the window", plan.method,
-                                       arrival, place(best->candidate.promise.next_surfacing),
-                                       Seconds{deadline_ - now_.tick}.count()));
+  say(Level::info, "plan",
+      fmt::format("plan by {}: {}, next surfacing expected at {}, {:.0f} s left in the window", plan.method, arrival,
+                  place(best->candidate.promise.next_surfacing), Seconds{deadline_ - now_.tick}.count()));
   out_.push_back(Emit{*best->file, key_, fmt::format("{}#{}", key_, request_), deadline_, replacing_});
 }
 
@@ -527,8 +554,12 @@ void Pilot::on(const EmissionEnded& e) {
       stage_ = Stage::stood_down;
       say(Level::alert, "foreign-file", "standing down for this surfacing: " + e.detail);
       return;
-    case Outcome::late: keep("late", e.detail); return;
-    case Outcome::aborted: keep("emission", e.detail); return;
+    case Outcome::late:
+      keep("late", e.detail);
+      return;
+    case Outcome::aborted:
+      keep("emission", e.detail);
+      return;
     case Outcome::unknown:
       stage_ = Stage::kept;
       say(Level::page, "emission", "it is not known whether the file went out: " + e.detail);
@@ -552,7 +583,8 @@ void Pilot::on(const FolderSeen& e) {
 void Pilot::keep(const std::string& code, const std::string& why) {
   stage_ = Stage::kept;
   record("keep", why);
-  say(Level::alert, code, fmt::format("nothing is emitted: {}. The glider keeps its list and starts it again at its first waypoint", why));
+  say(Level::alert, code,
+      fmt::format("nothing is emitted: {}. The glider keeps its list and starts it again at its first waypoint", why));
   expect_next();
 }
 
@@ -574,24 +606,32 @@ void Pilot::expect_next() {
 void Pilot::on(const TimerFired& e) {
   const auto kind = static_cast<std::size_t>(e.timer);
   if (e.serial != serials_[kind]) return;
-  const auto overdue = [&] { return expected_s_ ? hours(Seconds{epoch_seconds(now_.utc) - *expected_s_}) : std::string{"?"}; };
+  const auto overdue = [&] {
+    return expected_s_ ? hours(Seconds{epoch_seconds(now_.utc) - *expected_s_}) : std::string{"?"};
+  };
   switch (e.timer) {
     case Timer::budget:
       budget_over_ = true;
       emit_if_due();
       return;
-    case Timer::deadline: emit_if_due(); return;
+    case Timer::deadline:
+      emit_if_due();
+      return;
     case Timer::late_note:
       late_said_ = true;
-      say(Level::note, "late", fmt::format("the call is late: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
+      say(Level::note, "late",
+          fmt::format("the call is late: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
       return;
     case Timer::late_alert:
       late_said_ = true;
-      say(Level::alert, "late", fmt::format("the second call is missed: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
+      say(Level::alert, "late",
+          fmt::format("the second call is missed: expected {}, {} ago", clock_text(instant_at(*expected_s_)),
+                      overdue()));
       return;
     case Timer::late_page:
       late_said_ = true;
-      say(Level::page, "late", fmt::format("no call for {} after it was expected ({})", overdue(), clock_text(instant_at(*expected_s_))));
+      say(Level::page, "late",
+          fmt::format("no call for {} after it was expected ({})", overdue(), clock_text(instant_at(*expected_s_))));
       return;
   }
 }
@@ -606,14 +646,15 @@ void Pilot::on(const MissionChanged& e) {
     const auto& m = text.mission;
     record("mission", fmt::format("{} ({}) by {}", m.name, text.sha256.substr(0, 12), e.by));
     say(Level::info, "mission",
-        fmt::format("mission {}: goal {}, {:.1f} km radius, {} h stints, method {}, approval {}{}", m.name, place(m.goal),
-                    m.goal_radius.si() / 1000, m.stint.count() / 3600, m.method,
+        fmt::format("mission {}: goal {}, {:.1f} km radius, {} h stints, method {}, approval {}{}", m.name,
+                    place(m.goal), m.goal_radius.si() / 1000, m.stint.count() / 3600, m.method,
                     m.approval == Approval::manual      ? "manual"
                     : m.approval == Approval::automatic ? "auto"
                                                         : "auto-if-safe",
                     at_once ? "" : "; in force at the next surfacing"));
   }
-  if (e.chain.empty()) say(Level::note, "mission", "no mission is configured any more; at the next surfacing nothing is planned");
+  if (e.chain.empty())
+    say(Level::note, "mission", "no mission is configured any more; at the next surfacing nothing is planned");
   if (at_once)
     take_over(e);
   else
@@ -660,9 +701,13 @@ void Pilot::say(Level level, std::string code, std::string text) {
   out_.push_back(Say{level, std::move(code), std::move(text)});
 }
 
-void Pilot::record(std::string kind, std::string text) { out_.push_back(Record{std::move(kind), key_, std::move(text)}); }
+void Pilot::record(std::string kind, std::string text) {
+  out_.push_back(Record{std::move(kind), key_, std::move(text)});
+}
 
-void Pilot::set_timer(Timer timer, Tick at) { out_.push_back(SetTimer{timer, ++serials_[static_cast<std::size_t>(timer)], at}); }
+void Pilot::set_timer(Timer timer, Tick at) {
+  out_.push_back(SetTimer{timer, ++serials_[static_cast<std::size_t>(timer)], at});
+}
 
 void Pilot::cancel_timer(Timer timer) {
   ++serials_[static_cast<std::size_t>(timer)];

@@ -103,22 +103,22 @@ class Pilot {
   void cancel_timer(Timer timer);
 
   std::string glider_;
-  std::vector<MissionText> chain_;                  ///< missions in force: the first is flown, the others wait for its goal
-  std::optional<Mission> mission_;                  ///< the one that is flown
-  std::optional<MissionChanged> change_;            ///< waits for the next surfacing
+  std::vector<MissionText> chain_;        ///< missions in force: the first is flown, the others wait for its goal
+  std::optional<Mission> mission_;        ///< the one that is flown
+  std::optional<MissionChanged> change_;  ///< waits for the next surfacing
   bool skew_ok_{};
 
   Moment now_{};
   Effects out_;
 
   // the glider as far as known
-  std::optional<model::Surfacing> last_;            ///< newest accepted fix
-  std::deque<model::Surfacing> recent_;             ///< accepted fixes of the last surfacings, for S4
-  std::optional<model::Surfacing> quarantined_;     ///< a jump that waits for a second fix to agree (S5)
-  std::optional<Instant> dived_at_;                 ///< when the dialog last said that the glider goes under
-  std::optional<Current> believed_;                 ///< measured DAC, true frame
+  std::optional<model::Surfacing> last_;         ///< newest accepted fix
+  std::deque<model::Surfacing> recent_;          ///< accepted fixes of the last surfacings, for S4
+  std::optional<model::Surfacing> quarantined_;  ///< a jump that waits for a second fix to agree (S5)
+  std::optional<Instant> dived_at_;              ///< when the dialog last said that the glider goes under
+  std::optional<Current> believed_;              ///< measured DAC, true frame
   FrameRotation rotation_{};
-  int count_{};                                     ///< surfacings accepted
+  int count_{};  ///< surfacings accepted
   bool arrived_{};
 
   // the surfacing that is open
@@ -133,7 +133,7 @@ class Pilot {
   std::string problem_;
   std::optional<GeoPoint> planned_from_;
   bool transfer_began_{}, replacing_{}, alerted_{};
-  std::optional<model::Refusal> refused_;           ///< the last one, so that its reprints are not said again
+  std::optional<model::Refusal> refused_;  ///< the last one, so that its reprints are not said again
   std::optional<std::string> skew_;
 
   // what was promised for the next one

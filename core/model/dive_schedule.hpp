@@ -9,8 +9,8 @@ namespace glidehelm::model {
 struct DiveSchedule {
   Seconds stint{4 * 3600.0};
   Seconds first_stint{4 * 3600.0};
-  Seconds surface{15 * 60.0};        ///< between two stints: the glider drifts with the surface current
-  Seconds time_to_dive{15 * 60.0};   ///< from the fix to the first dive: drift likewise
+  Seconds surface{15 * 60.0};       ///< between two stints: the glider drifts with the surface current
+  Seconds time_to_dive{15 * 60.0};  ///< from the fix to the first dive: drift likewise
 
   [[nodiscard]] Seconds stint_length(int k) const { return k == 0 ? first_stint : stint; }
   /// Drift before stint k (0-based).

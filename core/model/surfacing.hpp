@@ -37,21 +37,21 @@ struct SurfaceReason {
 /// A surfacing that passed the rules of slocum.md 6.2 that need no memory (S1–S4, S7): one fresh, complete GPS fix of a
 /// named glider, and what the same block said beside it. Duplicates and jumps are the pilot's to judge (S4–S6).
 struct Surfacing {
-  std::string glider;            ///< lower case
-  Instant heard;                 ///< our clock when the fix line was complete
+  std::string glider;  ///< lower case
+  Instant heard;       ///< our clock when the fix line was complete
   GeoPoint fix;
-  Instant fix_taken;             ///< heard − age: our clock, not the glider's
+  Instant fix_taken;  ///< heard − age: our clock, not the glider's
   Seconds fix_age{};
-  GliderTime curr_time;          ///< `Curr Time` of the block: identifies the fix together with its age
+  GliderTime curr_time;            ///< `Curr Time` of the block: identifies the fix together with its age
   std::string lat_ddmm, lon_ddmm;  ///< as printed: equal texts and times within 2 s are the same fix (S4)
 
-  bool at_surface{};             ///< from an at-surface block of a running mission, not only from a connection block
-  std::string mission;           ///< as printed, lower case; empty when not printed
-  std::string segment;           ///< `MMMM.SSSS`; empty when not printed
+  bool at_surface{};    ///< from an at-surface block of a running mission, not only from a connection block
+  std::string mission;  ///< as printed, lower case; empty when not printed
+  std::string segment;  ///< `MMMM.SSSS`; empty when not printed
   std::optional<SurfaceReason> because;
-  std::optional<Seconds> until_diving;   ///< `Time until diving`, counted from `heard`
-  std::optional<LocalVelocity> water;    ///< m_water_vx/vy
-  bool water_is_final{};                 ///< `Water Velocity Calculations COMPLETE` was printed in this block
+  std::optional<Seconds> until_diving;  ///< `Time until diving`, counted from `heard`
+  std::optional<LocalVelocity> water;   ///< m_water_vx/vy
+  bool water_is_final{};                ///< `Water Velocity Calculations COMPLETE` was printed in this block
   std::optional<AimLine> aim;
   std::optional<MetresPerSecond> believed_speed;  ///< m_avg_speed
   std::optional<int> current_correction;          ///< u_use_current_correction
@@ -68,7 +68,7 @@ bool same_fix(const Surfacing& a, const Surfacing& b);
 
 /// A fix that is not used: which rule of slocum.md refused it, and why in words a pilot reads.
 struct Refusal {
-  std::string rule;    ///< "S2", "S3", "S4", "S5", "S6", …
+  std::string rule;  ///< "S2", "S3", "S4", "S5", "S6", …
   std::string reason;
   std::string glider;  ///< as far as known
   Instant heard;

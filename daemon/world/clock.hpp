@@ -15,11 +15,11 @@ using TimerId = std::uint64_t;
 class Clock {
  public:
   virtual ~Clock() = default;
-  [[nodiscard]] virtual Instant utc() const = 0;   ///< the world's time: may step
-  [[nodiscard]] virtual Tick tick() const = 0;     ///< never steps, counts through suspend (CLOCK_BOOTTIME)
+  [[nodiscard]] virtual Instant utc() const = 0;  ///< the world's time: may step
+  [[nodiscard]] virtual Tick tick() const = 0;    ///< never steps, counts through suspend (CLOCK_BOOTTIME)
   /// Calls `then` once, from the loop, at or after `when`. Timers of equal tick fire in the order they were set.
   virtual TimerId call_at(Tick when, std::function<void()> then) = 0;
-  virtual void cancel(TimerId id) = 0;             ///< no effect on a timer that fired
+  virtual void cancel(TimerId id) = 0;  ///< no effect on a timer that fired
   /// True when time is handed in by a simulator: every status and log line then says SIMULATED.
   [[nodiscard]] virtual bool simulated() const = 0;
 };

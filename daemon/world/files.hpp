@@ -17,7 +17,7 @@ namespace glidehelm::world {
 struct FileError {
   std::string operation;  ///< "open", "rename", "fsync", …
   std::string path;
-  int code{};             ///< errno
+  int code{};  ///< errno
   [[nodiscard]] std::string message() const;
   friend bool operator==(const FileError&, const FileError&) = default;
 };
@@ -44,8 +44,9 @@ class OpenFile {
 class AppendFile {
  public:
   virtual ~AppendFile() = default;
-  [[nodiscard]] virtual FileResult<Done> append(std::string_view bytes) = 0;  ///< all or an error; loops over short writes
-  [[nodiscard]] virtual FileResult<Done> sync() = 0;                          ///< fdatasync
+  [[nodiscard]] virtual FileResult<Done> append(
+      std::string_view bytes) = 0;                    ///< all or an error; loops over short writes
+  [[nodiscard]] virtual FileResult<Done> sync() = 0;  ///< fdatasync
 };
 
 /// Bytes of a file mapped read-only; stays valid when the name is replaced by rename.
@@ -66,9 +67,9 @@ class Folder {
  public:
   virtual ~Folder() = default;
   [[nodiscard]] virtual const std::string& path() const = 0;
-  [[nodiscard]] virtual FileResult<FileStat> stat_self() = 0;               ///< of the folder that was opened
+  [[nodiscard]] virtual FileResult<FileStat> stat_self() = 0;                  ///< of the folder that was opened
   [[nodiscard]] virtual FileResult<FileStat> stat(std::string_view name) = 0;  ///< ENOENT in `code` when absent
-  [[nodiscard]] virtual FileResult<std::vector<std::string>> list() = 0;    ///< sorted, without . and ..
+  [[nodiscard]] virtual FileResult<std::vector<std::string>> list() = 0;       ///< sorted, without . and ..
   [[nodiscard]] virtual FileResult<std::string> read(std::string_view name, std::size_t at_most) = 0;
   [[nodiscard]] virtual FileResult<std::unique_ptr<OpenFile>> open(std::string_view name) = 0;  ///< read-only
   /// O_EXCL | O_NOFOLLOW, whole content, fchmod, fsync, close: the file is complete and durable, or an error and gone.
@@ -82,7 +83,7 @@ class Folder {
   [[nodiscard]] virtual FileResult<Done> exchange(std::string_view name, Folder& with, std::string_view other) = 0;
   /// rename that replaces: for files that only we own (caches, grids).
   [[nodiscard]] virtual FileResult<Done> rename_over(std::string_view name, Folder& to, std::string_view new_name) = 0;
-  [[nodiscard]] virtual FileResult<Done> sync() = 0;                        ///< fsync of the directory
+  [[nodiscard]] virtual FileResult<Done> sync() = 0;  ///< fsync of the directory
   /// Exclusive OFD lock on `name` (created when absent); EAGAIN when somebody holds it.
   [[nodiscard]] virtual FileResult<std::unique_ptr<Lock>> lock(std::string_view name) = 0;
 };

@@ -12,18 +12,18 @@
 namespace glidehelm::world {
 
 struct ProcessRequest {
-  std::string program;                      ///< absolute path, or a name looked up beside the running executable, then in PATH
+  std::string program;  ///< absolute path, or a name looked up beside the running executable, then in PATH
   std::vector<std::string> arguments;
-  std::string input;                        ///< written to its standard input, then closed
-  std::shared_ptr<OpenFile> descriptor3;    ///< passed as descriptor 3 when set; all others but 0–2 are closed
-  Seconds deadline{30};                     ///< then SIGKILL
-  std::size_t output_at_most{16U << 20};    ///< of stdout and of stderr each; beyond that it is killed
-  std::size_t memory_at_most{};             ///< RLIMIT_AS in bytes; 0 = none
+  std::string input;                      ///< written to its standard input, then closed
+  std::shared_ptr<OpenFile> descriptor3;  ///< passed as descriptor 3 when set; all others but 0–2 are closed
+  Seconds deadline{30};                   ///< then SIGKILL
+  std::size_t output_at_most{16U << 20};  ///< of stdout and of stderr each; beyond that it is killed
+  std::size_t memory_at_most{};           ///< RLIMIT_AS in bytes; 0 = none
 };
 
 struct ProcessResult {
   enum class End { exited, signalled, deadline, output_too_long, not_started } end{End::not_started};
-  int code{};                               ///< exit code or signal number or errno
+  int code{};  ///< exit code or signal number or errno
   std::string out, err;
   [[nodiscard]] bool succeeded() const { return end == End::exited && code == 0; }
 };

@@ -13,8 +13,8 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Arrows {
-  std::map<std::string, std::set<std::string>> rooms;                          // room → rooms it may include
-  std::vector<std::pair<std::string, std::set<std::string>>> outside;          // header prefix → rooms that may
+  std::map<std::string, std::set<std::string>> rooms;                  // room → rooms it may include
+  std::vector<std::pair<std::string, std::set<std::string>>> outside;  // header prefix → rooms that may
 };
 
 Arrows read_arrows() {
@@ -39,7 +39,8 @@ Arrows read_arrows() {
 std::string room_of(const std::string& path, const Arrows& arrows) {
   std::string best;
   for (const auto& [room, allowed] : arrows.rooms)
-    if (path.rfind(room, 0) == 0 && (path[room.size()] == '/' || path[room.size()] == '.') && room.size() > best.size()) best = room;
+    if (path.rfind(room, 0) == 0 && (path[room.size()] == '/' || path[room.size()] == '.') && room.size() > best.size())
+      best = room;
   return best;
 }
 
@@ -64,7 +65,8 @@ std::vector<Include> includes_of(const fs::path& root) {
         const auto open = line.find_first_of("<\"", start);
         const auto close = line.find_first_of(">\"", open + 1);
         if (open == std::string::npos || close == std::string::npos) continue;
-        found.push_back({fs::relative(entry.path(), root).string(), line.substr(open + 1, close - open - 1), line[open] == '"', number});
+        found.push_back({fs::relative(entry.path(), root).string(), line.substr(open + 1, close - open - 1),
+                         line[open] == '"', number});
       }
     }
   return found;

@@ -21,7 +21,9 @@ struct PilotDesk {
   std::vector<mission::Event> events;
   std::vector<mission::Effects> effects;
 
-  explicit PilotDesk(mission::Mission m = mission_to_goal()) { step(mission::MissionChanged{{{std::move(m), "yaml", "sha-1"}}, false, "start"}); }
+  explicit PilotDesk(mission::Mission m = mission_to_goal()) {
+    step(mission::MissionChanged{{{std::move(m), "yaml", "sha-1"}}, false, "start"});
+  }
 
   static mission::Mission mission_to_goal() {
     mission::Mission m;
@@ -58,7 +60,8 @@ struct PilotDesk {
     return s;
   }
 
-  [[nodiscard]] static model::Surfacing at_surface(model::Surfacing s, std::string segment = "0007.0003", std::string mi = "GLIDE.MI") {
+  [[nodiscard]] static model::Surfacing at_surface(model::Surfacing s, std::string segment = "0007.0003",
+                                                   std::string mi = "GLIDE.MI") {
     s.at_surface = true;
     s.segment = std::move(segment);
     s.mission = std::move(mi);
@@ -78,7 +81,8 @@ struct PilotDesk {
     return all<E>(effects.back());
   }
 
-  [[nodiscard]] mission::Candidate candidate(std::uint64_t request, std::uint64_t number, const std::string& method) const {
+  [[nodiscard]] mission::Candidate candidate(std::uint64_t request, std::uint64_t number,
+                                             const std::string& method) const {
     mission::Candidate c;
     c.request = request;
     c.number = number;
@@ -116,7 +120,8 @@ struct PilotDesk {
     again.fix_age = Seconds{75};
     again.curr_time += std::chrono::seconds{15};
     const auto emit = all<mission::Emit>(step(mission::SurfacingHeard{again, std::nullopt}));
-    if (!emit.empty()) step(mission::EmissionEnded{mission::EmissionEnded::Outcome::queued, emit[0].surfacing, "goto_l10.ma is queued"});
+    if (!emit.empty())
+      step(mission::EmissionEnded{mission::EmissionEnded::Outcome::queued, emit[0].surfacing, "goto_l10.ma is queued"});
     wait(Seconds{200});
     step(mission::DiveBegan{});
   }

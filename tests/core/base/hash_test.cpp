@@ -5,7 +5,8 @@
 using namespace glidehelm;
 
 TEST_CASE("SHA-256 gives the values of FIPS 180-4") {
-  CHECK(Sha256::of(std::string_view{"abc"}).hex() == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(Sha256::of(std::string_view{"abc"}).hex() ==
+        "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   CHECK(Sha256::of(std::string_view{}).hex() == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
 }
 

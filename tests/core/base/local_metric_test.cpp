@@ -36,7 +36,8 @@ TEST_CASE("one stint walked with the local metric ends where the geodesic says, 
         CHECK(distance(from, to).si() == Approx(length).epsilon(1e-4));
         const auto back = geodesic(from, to);
         // Direction: the geodesic leaves at the azimuth minus half the convergence over the leg.
-        const double half_convergence = 0.5 * length * std::sin(degrees(azimuth).si()) * std::tan(degrees(lat).si()) / 6371000.0;
+        const double half_convergence =
+            0.5 * length * std::sin(degrees(azimuth).si()) * std::tan(degrees(lat).si()) / 6371000.0;
         const double turn = (back.departing - Bearing{degrees(azimuth)}).si();
         CHECK(std::abs(turn + half_convergence) < 2e-4);
       }

@@ -112,7 +112,8 @@ TEST_CASE("auto-if-safe emits, but only proposes when there was an alert") {
 
 TEST_CASE("a refused fix is said once, however often it is printed") {
   PilotDesk desk;
-  const model::Refusal refusal{"S3", "the fix is 1500 s old; allowed is 1200 s", "sim01", desk.now.utc, "2830.000", "-1518.000"};
+  const model::Refusal refusal{
+      "S3", "the fix is 1500 s old; allowed is 1200 s", "sim01", desk.now.utc, "2830.000", "-1518.000"};
   desk.step(FixRefused{refusal});
   CHECK(desk.last<Say>().size() == 1);
   desk.step(FixRefused{refusal});
@@ -144,7 +145,8 @@ TEST_CASE("the better candidate wins, and the earlier one when the better is ref
     verify = desk.last<Verify>();
     REQUIRE(verify.size() == 1);
     CHECK(desk.last<Emit>().empty());
-    desk.step(Judged{id, 2, test::verdict_on("goto_l10.ma", verify[0].dossier.file_bytes, better_passes ? "" : "2 land"), ""});
+    desk.step(Judged{id, 2,
+                     test::verdict_on("goto_l10.ma", verify[0].dossier.file_bytes, better_passes ? "" : "2 land"), ""});
     REQUIRE(desk.last<Emit>().size() == 1);
     CHECK(desk.last<Emit>()[0].file.bytes() == (better_passes ? "bytes of 1 2" : "bytes of 1 1"));
   }
@@ -270,7 +272,8 @@ TEST_CASE("at the goal the mission that follows takes over at once") {
   auto onward = PilotDesk::mission_to_goal();
   onward.name = "leg-3";
   onward.goal = geo_point(29.9, -15.9);
-  desk.step(MissionChanged{{{PilotDesk::mission_to_goal(), "yaml", "sha-1"}, {onward, "yaml 3", "sha-3"}}, false, "start"});
+  desk.step(
+      MissionChanged{{{PilotDesk::mission_to_goal(), "yaml", "sha-1"}, {onward, "yaml 3", "sha-3"}}, false, "start"});
   desk.step(SurfacingHeard{desk.heard(29.16, -15.5), std::nullopt});
   CHECK(said(desk.effects.back(), "arrived"));
   CHECK_FALSE(desk.pilot.arrived());
@@ -290,7 +293,8 @@ TEST_CASE("a glider that drifted more than a kilometre while our file is queued 
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.504, -15.3)), std::nullopt});  // 440 m
   CHECK(desk.last<BeginPlanning>().empty());
   desk.wait(Seconds{120});
-  desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.512, -15.3)), std::nullopt});  // 1.3 km from the plan's fix
+  desk.step(
+      SurfacingHeard{PilotDesk::at_surface(desk.heard(28.512, -15.3)), std::nullopt});  // 1.3 km from the plan's fix
   REQUIRE(desk.last<BeginPlanning>().size() == 1);
   desk.answer();
   REQUIRE(desk.last<Emit>().size() == 1);

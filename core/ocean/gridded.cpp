@@ -117,7 +117,7 @@ GriddedField::Spot GriddedField::wet_mean(const float* slice, const Place& place
                                             slice + (place.j + 1) * row_stride_ + 2 * place.east};
   if (place.east == place.i + 1) {
     const auto mean = bilinear_at(corner, row_stride_, place.fx, place.fy);
-    if (mean.east == mean.east) return {mean.east, mean.north, true, false, 0};
+    if (mean[0] == mean[0]) return {mean[0], mean[1], true, false, 0};
   }
   const double fx = place.fx, fy = place.fy;
   const std::array<double, 4> weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
@@ -208,7 +208,7 @@ GriddedField::Answer GriddedField::in_time(const Place& place, double depth, con
     const std::size_t corner = place.j * row_stride_ + 2 * place.i;
     const auto mean = bilinear_between(slice(bracket.first, 0) + corner, slice(bracket.next, 0) + corner, row_stride_,
                                        place.fx, place.fy, static_cast<float>(bracket.fraction));
-    if (mean.east == mean.east) return answer(mean.east, mean.north, false);
+    if (mean[0] == mean[0]) return answer(mean[0], mean[1], false);
   }
   const auto before = at_time(place, depth, bracket.first);
   if (!before) return before;

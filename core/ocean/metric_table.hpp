@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/local_metric.hpp"
+#include "core/ocean/bilinear.hpp"
 
 namespace glidehelm::ocean {
 
@@ -16,10 +17,6 @@ namespace glidehelm::ocean {
 /// 80°. Beyond 80° the exact formula is used.
 class MetricTable {
  public:
-  struct Inverse {
-    double meridian, parallel;  ///< 1/M and 1/(N cos φ): radians per metre of north and east
-  };
-
   MetricTable() = default;
   /// For latitudes in [south, north], radians; a margin of one entry on both sides.
   MetricTable(double south, double north) {
@@ -31,26 +28,25 @@ class MetricTable {
     for (std::size_t k = 0; k < count; ++k) entries_.push_back(exact(south + static_cast<double>(k) * kSpacing));
   }
 
-  /// Precondition: lat within the interval of the constructor.
-  [[nodiscard]] Inverse at(double lat) const {
+  /// (1/(N cos φ), 1/M): radians of longitude per metre of east, of latitude per metre of north. Precondition: lat within
+  /// the interval of the constructor.
+  [[nodiscard]] Double2 at(double lat) const {
     if (lat > kExactBeyond || lat < -kExactBeyond) return exact(lat);
     const double place = (lat - first_) * (1.0 / kSpacing);
-    const auto k = static_cast<std::size_t>(static_cast<int>(place));
-    const double f = place - static_cast<double>(static_cast<int>(place));
-    const Inverse& a = entries_[k];
-    const Inverse& b = entries_[k + 1];
-    return {a.meridian + f * (b.meridian - a.meridian), a.parallel + f * (b.parallel - a.parallel)};
+    const int k = static_cast<int>(place);
+    const Double2* const entry = entries_.data() + k;
+    return entry[0] + (place - static_cast<double>(k)) * (entry[1] - entry[0]);
   }
-  static Inverse exact(double lat) {
+  static Double2 exact(double lat) {
     const auto metric = LocalMetric::at(lat);
-    return {1.0 / metric.meridian_radius, 1.0 / metric.parallel_radius};
+    return Double2{1.0 / metric.parallel_radius, 1.0 / metric.meridian_radius};
   }
 
   static constexpr double kSpacing = 2.5e-4;
   static constexpr double kExactBeyond = 80.0 * kPi / 180.0;
 
  private:
-  std::vector<Inverse> entries_;
+  std::vector<Double2> entries_;
   double first_{};
 };
 

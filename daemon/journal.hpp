@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/base/expected.hpp"
+#include "core/base/hash.hpp"
+#include "core/base/time.hpp"
+#include "daemon/world/files.hpp"
+
+namespace glidehelm::daemon {
+
+/// What a record is about. The numbers are on disk: never reuse one.
+enum class RecordType : std::uint16_t {
+  epoch = 1,       ///< a process took the journal over
+  event = 2,       ///< what a pilot was told
+  surfacing = 10,  ///< decisions of a pilot, in words …
+  refusal = 11,
+  duplicate = 12,
+  plan = 13,
+  verdict = 14,
+  proposal = 15,
+  keep = 16,
+  emission = 17,
+  mission = 18,
+  alert = 19,
+  intent = 30,  ///< an emission begins: durable before anything is visible
+  committed = 31,
+  aborted = 32,
+  recovered = 33,
+};
+std::string_view word(RecordType type);
+
+/// One record as read back. The payload is JSON text made by whoever appended it.
+struct JournalRecord {
+  std::uint64_t sequence{};
+  std::uint64_t epoch{};
+  RecordType type{};
+  Instant utc;
+  Tick tick;
+  std::string payload;
+  friend bool operator==(const JournalRecord&, const JournalRecord&) = default;
+};
+
+/// Why a journal cannot be used. `corrupt`: a bad record with good ones behind it; nothing may be emitted until a human
+/// has looked.
+struct JournalError {
+  enum class What { file, corrupt, newer, too_long, no_space } what{};
+  std::string message;
+  bool fatal{};  ///< a sync failed: what the disk holds is unknown; the process ends at once (trust.md K-4)
+  friend bool operator==(const JournalError&, const JournalError&) = default;
+};
+
+/// The truth: an append-only, checksummed, chained log in segments of 16 MiB (trust.md 6.3).
+///
+/// A segment `journal-NNNNNN.log` begins with a header of 32 bytes (magic "GLHJRNL1", version, segment number, CRC-32C).
+/// A record, little-endian:
+///
+///     offset  size  field
+///          0     4  magic "GREC"
+///          4     2  version (1)
+///          6     2  type
+///          8     4  bytes of the payload (≤ 64 KiB)
+///         12     4  zero
+///         16     8  sequence number, +1 each, over all segments
+///         24     8  epoch: +1 at each opening
+///         32     8  UTC, ms since 1970
+///         40     8  tick, ms
+///         48    16  first half of the SHA-256 of the previous record (zero for the first)
+///         64     4  CRC-32C of bytes 0–63
+///         68     …  payload
+///          …     4  CRC-32C of everything before
+///
+/// Opening reads everything back. A torn tail (a bad record in the last segment with nothing valid in the 64 KiB behind
+/// it) is copied to `journal-NNNNNN.torn-SEQUENCE` and cut; anything else that is bad is corrupt. A reserve file keeps
+/// 1 MiB free: when the disk is full it is given up, so that "stopped: no space" can still be written (K-3).
+class Journal {
+ public:
+  static constexpr std::size_t kSegment = 16U << 20;
+  static constexpr std::size_t kMostPayload = 64U << 10;
+
+  /// Opens or begins the journal in `folder`, which must outlive it, and appends an epoch record durably.
+  static Expected<std::unique_ptr<Journal>, JournalError> open(world::Folder& folder, Instant utc, Tick tick);
+
+  /// Everything that was there at the opening, the new epoch record not included.
+  [[nodiscard]] const std::vector<JournalRecord>& past() const { return past_; }
+  /// Frees what `past` holds once it was replayed.
+  void forget_past() { past_ = {}; }
+  [[nodiscard]] std::uint64_t epoch() const { return epoch_; }
+  [[nodiscard]] const std::string& note() const { return note_; }  ///< what was mended at the opening; empty: nothing
+
+  enum class Durable { no, yes };
+  /// Appends one record; with Durable::yes it survives a power cut once this returns. After a failed write the record is
+  /// cut off again; after a failed sync the error is fatal.
+  Expected<std::uint64_t, JournalError> append(RecordType type, std::string_view payload, Instant utc, Tick tick,
+                                               Durable durable = Durable::no);
+
+ private:
+  explicit Journal(world::Folder& folder) : folder_{folder} {}
+  Expected<Done, JournalError> read_back();
+  Expected<Done, JournalError> read_segment(const std::string& name, bool last);
+  Expected<Done, JournalError> cut_torn(const std::string& name, std::size_t good, std::string_view content);
+  Expected<Done, JournalError> begin_segment(std::uint64_t number);
+  Expected<Done, JournalError> continue_segment();
+  [[nodiscard]] JournalError failed(const world::FileError& error, bool fatal) const;
+
+  world::Folder& folder_;
+  std::unique_ptr<world::AppendFile> file_;
+  std::string name_;
+  std::uint64_t segment_{}, size_{}, sequence_{}, epoch_{};
+  Sha256 last_hash_{};
+  std::vector<JournalRecord> past_;
+  std::string note_;
+  bool broken_{};
+};
+
+}  // namespace glidehelm::daemon

@@ -204,7 +204,8 @@ void members(model::Glider& g, F&& f) {
 }
 template <class F>
 void members(model::DiveSchedule& s, F&& f) {
-  f("stint_s", s.stint), f("first_stint_s", s.first_stint), f("surface_s", s.surface), f("time_to_dive_s", s.time_to_dive);
+  f("stint_s", s.stint), f("first_stint_s", s.first_stint), f("surface_s", s.surface),
+      f("time_to_dive_s", s.time_to_dive);
 }
 template <class F>
 void members(model::Waypoint& w, F&& f) {
@@ -218,19 +219,22 @@ void members(safety::Rules& r, F&& f) {
 }
 template <class F>
 void members(safety::Promise& p, F&& f) {
-  f("points", p.points), f("next_surfacing", p.next_surfacing), f("list_arrival_s", p.list_arrival_s), f("goal", p.goal);
+  f("points", p.points), f("next_surfacing", p.next_surfacing), f("list_arrival_s", p.list_arrival_s),
+      f("goal", p.goal);
   f("goal_radius_m", p.goal_radius), f("radius_m", p.radius), f("at_end", p.at_end);
 }
 template <class F>
 void members(safety::Dossier& d, F&& f) {
   f("file_name", d.file_name), f("file_bytes", d.file_bytes), f("glider_expected", d.glider_expected), f("at", d.at);
   f("current_surfacing", d.current_surfacing), f("answers_surfacing", d.answers_surfacing), f("glider", d.glider);
-  f("believed_current", d.believed_current), f("schedule", d.schedule), f("fix_s", d.fix_s), f("horizon_s", d.horizon_s);
+  f("believed_current", d.believed_current), f("schedule", d.schedule), f("fix_s", d.fix_s),
+      f("horizon_s", d.horizon_s);
   f("rules", d.rules), f("promise", d.promise), f("judged_s", d.judged_s), f("deadline_s", d.deadline_s);
 }
 template <class F>
 void members(safety::Margin& m, F&& f) {
-  f("rule", m.rule), f("holds", m.holds), f("found", m.found), f("limit", m.limit), f("unit", m.unit), f("message", m.message);
+  f("rule", m.rule), f("holds", m.holds), f("found", m.found), f("limit", m.limit), f("unit", m.unit),
+      f("message", m.message);
 }
 template <class F>
 void members(safety::Verdict& v, F&& f) {
@@ -247,12 +251,14 @@ void members(ocean::GriddedOptions& o, F&& f) {
 }
 template <class F>
 void members(ocean::AnalyticSpec& s, F&& f) {
-  f("kind", s.kind), f("origin", s.origin), f("length_scale_m", s.length_scale), f("speed_scale_m_per_s", s.speed_scale);
+  f("kind", s.kind), f("origin", s.origin), f("length_scale_m", s.length_scale),
+      f("speed_scale_m_per_s", s.speed_scale);
   f("time_scale_s", s.time_scale), f("t0_ms", s.t0), f("south", s.south), f("params", s.params), f("list", s.gaussians);
 }
 template <class F>
 void members(ocean::Coverage& c, F&& f) {
-  f("south_rad", c.south), f("north_rad", c.north), f("west_rad", c.west), f("east_rad", c.east), f("first_s", c.first_s);
+  f("south_rad", c.south), f("north_rad", c.north), f("west_rad", c.west), f("east_rad", c.east),
+      f("first_s", c.first_s);
   f("last_s", c.last_s), f("holds_outside", c.holds_outside);
 }
 template <class F>
@@ -271,7 +277,9 @@ struct Ignore {
   void operator()(const char*, M&) const {}
 };
 template <class T>
-concept HasMembers = requires(T& value) { members(value, Ignore{}); };
+concept HasMembers = requires(T& value) {
+  members(value, Ignore{});
+};
 
 template <HasMembers T>
 json write(const T& value) {

@@ -34,7 +34,7 @@ struct VerifyRequest {
   std::optional<InputFile> grid;
   ocean::GriddedOptions grid_options;
   std::vector<ocean::AnalyticSpec> analytic;
-  Instant analytic_start;            ///< t0 of specifications that name none
+  Instant analytic_start;  ///< t0 of specifications that name none
   ocean::Coverage analytic_box;
   std::optional<InputFile> coast;
   std::vector<chart::Area> keep_in, keep_out;

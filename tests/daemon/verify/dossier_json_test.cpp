@@ -46,7 +46,8 @@ safety::Dossier awkward_dossier() {
   d.horizon_s = std::numeric_limits<double>::infinity();
   d.rules.max_wpt_distance = Metres{20'000};
   d.rules.slot = 99;
-  d.promise.points = {{geo_point(40.123456789, -15.5), model::WaypointRole::aim}, {geo_point(41, -15), model::WaypointRole::goal}};
+  d.promise.points = {{geo_point(40.123456789, -15.5), model::WaypointRole::aim},
+                      {geo_point(41, -15), model::WaypointRole::goal}};
   d.promise.next_surfacing = geo_point(40.1, -15.4);
   d.promise.list_arrival_s = 1'732'600'000.0 / 3.0;
   d.promise.goal = geo_point(41, -15);
@@ -118,7 +119,8 @@ TEST_CASE("a verdict comes back from its JSON, absent numbers included") {
   v.accepted = true;
   v.file_name = "goto_l10.ma";
   v.margins = {{"2 land", true, 2345.678901234567, 2000, "m", "2346 m from the coast"},
-               {"5 glider", false, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(), "", "heard '\x80'"}};
+               {"5 glider", false, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
+                "", "heard '\x80'"}};
   const auto back = verdict_from_json(to_json(v));
   REQUIRE(back.has_value());
   CHECK(*back == v);

@@ -1,0 +1,120 @@
+#include "daemon/verify/judge_request.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/chart/coast.hpp"
+#include "core/ocean/analytic.hpp"
+#include "core/ocean/grid_format.hpp"
+#include "core/ocean/gridded.hpp"
+
+namespace glidehelm::verify {
+
+namespace {
+
+Unexpected<InputProblem> problem(std::string path, std::string what) {
+  return unexpected(InputProblem{std::move(path), std::move(what)});
+}
+
+std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The fields of a request, and what keeps their numbers alive.
+struct Waters {
+  std::unique_ptr<world::Mapping> grid_bytes;
+  std::vector<ocean::GriddedField> grids;
+  std::vector<ocean::AnalyticField> formulas;
+  std::vector<ocean::FieldRef> parts;
+};
+
+Expected<Done, InputProblem> open_grid(const VerifyRequest& request, world::Files& files, Waters& waters) {
+  const auto& input = *request.grid;
+  auto mapping = files.map(input.path);
+  if (!mapping) return problem(input.path, mapping.error().message());
+  waters.grid_bytes = *std::move(mapping);
+  const auto bytes = waters.grid_bytes->bytes();
+  if (grid_identity(as_text(bytes)) != input.hash) return problem(input.path, "is not the grid that was planned on");
+  const auto view = ocean::open_grid(bytes);
+  if (!view) return problem(input.path, view.error().message());
+  auto options = request.grid_options;
+  if (!request.coast) options.mask_is_land = true;
+  waters.grids.emplace_back(*view, options);
+  return Done{};
+}
+
+Expected<Done, InputProblem> open_waters(const VerifyRequest& request, world::Files& files, Waters& waters) {
+  if (request.grid) {
+    auto opened = open_grid(request, files, waters);
+    if (!opened) return opened;
+  }
+  for (const auto& spec : request.analytic) {
+    const auto field = ocean::AnalyticField::make(spec, request.analytic_start, request.analytic_box);
+    if (!field) return problem("analytic currents", field.error().message());
+    waters.formulas.push_back(*field);
+  }
+  // Views only now: the vectors above no longer grow.
+  for (const auto& grid : waters.grids) waters.parts.emplace_back(grid);
+  for (const auto& formula : waters.formulas) waters.parts.emplace_back(formula);
+  if (waters.parts.empty()) return problem("request", "names neither a grid nor analytic currents");
+  return Done{};
+}
+
+Expected<chart::ChartSources, InputProblem> open_chart(const VerifyRequest& request, world::Files& files) {
+  chart::ChartSources sources;
+  sources.keep_in = request.keep_in;
+  sources.keep_out = request.keep_out;
+  for (const auto* areas : {&sources.keep_in, &sources.keep_out})
+    for (const auto& area : *areas)
+      if (area.vertices.size() < 3) return problem("area '" + area.name + "'", "has fewer than three corners");
+  if (!request.coast) return sources;
+  const auto mapping = files.map(request.coast->path);
+  if (!mapping) return problem(request.coast->path, mapping.error().message());
+  const auto bytes = (*mapping)->bytes();
+  if (Sha256::of(bytes) != request.coast->hash)
+    return problem(request.coast->path, "is not the coast file that was planned on");
+  auto coast = chart::Coast::read(bytes);
+  if (!coast) return problem(request.coast->path, coast.error().message());
+  sources.coast = std::make_shared<const chart::Coast>(*std::move(coast));
+  return sources;
+}
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace
+
+Expected<safety::Verdict, InputProblem> judge_request(const VerifyRequest& request, world::Files& files) {
+  Waters waters;
+  const auto opened = open_waters(request, files, waters);
+  if (!opened) return unexpected(opened.error());
+  const auto sources = open_chart(request, files);
+  if (!sources) return unexpected(sources.error());
+  const chart::Chart chart{*sources};
+  if (waters.parts.size() == 1) return safety::judge(request.dossier, waters.parts.front(), chart);
+  const ocean::FieldSum sum{waters.parts};
+  return safety::judge(request.dossier, sum, chart);
+}
+
+std::string explain(const safety::Verdict& verdict) {
+  std::string text =
+      (verdict.accepted ? "accepted: " : "REFUSED: ") + verdict.file_name + ", sha256 " + verdict.of.hex() + "\n";
+  for (const bool holding : {false, true})
+    for (const auto& m : verdict.margins) {
+      if (m.holds != holding) continue;
+      text += (holding ? "  holds   " : "  BROKEN  ") + m.rule + ": " + m.message;
+      if (!std::isnan(m.found))
+        text += " [found " + number(m.found) + (std::isnan(m.limit) ? "" : ", limit " + number(m.limit)) + " " +
+                m.unit + "]";
+      text += "\n";
+    }
+  return text;
+}
+
+}  // namespace glidehelm::verify

@@ -1,0 +1,10 @@
+behavior_name=goto_list
+# Glidehelm 2026-11-25T10:20:30Z plan 7
+<start:b_arg>
+  b_arg: num_legs_to_run(nodim) -1
+  b_arg: start_when(enum) 0 # BAW_IMMEDIATELY
+  b_arg: list_stop_when(enum) 7
+  b_arg: list_when_wpt_dist(m) 432.1
+  b_arg: initial_wpt(enum) 0
+  b_arg: num_waypoints(nodim) 2
+  b_arg: en

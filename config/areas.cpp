@@ -84,7 +84,8 @@ class GeoJsonReader {
     // Features of features do not exist in GeoJSON; refusing them here also bounds the recursion.
     for (std::size_t i = 0; i < features->size(); ++i) {
       const auto inner = "feature " + std::to_string(i);
-      if (!(*features)[i].is_object() || (*features)[i].value("type", Json{}) != "Feature") return fail(inner, "not a Feature");
+      if (!(*features)[i].is_object() || (*features)[i].value("type", Json{}) != "Feature")
+        return fail(inner, "not a Feature");
       if (!read_feature((*features)[i], inner)) return false;
     }
     return true;
@@ -110,7 +111,8 @@ class GeoJsonReader {
   }
 
   bool read_polygon(const Json& json, const std::string& where, const std::string& name) {
-    if (!json.is_array() || json.empty() || !json.front().is_array()) return fail(where, "no list of rings in \"coordinates\"");
+    if (!json.is_array() || json.empty() || !json.front().is_array())
+      return fail(where, "no list of rings in \"coordinates\"");
     if (json.size() > 1) return fail(where, "a polygon with a hole; draw the hole as an area of its own");
     chart::Area area;
     area.name = name.empty() ? std::to_string(areas.size() + 1) : name;
@@ -131,7 +133,8 @@ class GeoJsonReader {
 };
 
 std::string corner_text(const GeoPoint& p) {
-  return "{lat_deg: " + yaml_number(p.lat.radians(), kPi / 180) + ", lon_deg: " + yaml_number(p.lon.radians(), kPi / 180) + "}";
+  return "{lat_deg: " + yaml_number(p.lat.radians(), kPi / 180) +
+         ", lon_deg: " + yaml_number(p.lon.radians(), kPi / 180) + "}";
 }
 
 }  // namespace
@@ -155,7 +158,8 @@ void read_areas(const At& at, AreasDraft& draft) {
   }
   if (at.node.is(Node::Kind::broken)) return;
   if (!at.node.is(Node::Kind::list)) {
-    at.complain("neither polygons nor a path", at.found(), "[[{lat_deg, lon_deg}, …], …] or the path of a GeoJSON file");
+    at.complain("neither polygons nor a path", at.found(),
+                "[[{lat_deg, lon_deg}, …], …] or the path of a GeoJSON file");
     return;
   }
   for (std::size_t i = 0; i < at.node.items.size(); ++i) {

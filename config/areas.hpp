@@ -14,7 +14,7 @@ inline constexpr std::size_t kLargestGeoJson = 16U << 20;  ///< bytes
 inline constexpr std::size_t kMostVertices = 100'000;      ///< of all polygons of one key
 
 struct AreasDraft {
-  std::string geojson;              ///< path as resolved; empty: the polygons stand in the mission file
+  std::string geojson;  ///< path as resolved; empty: the polygons stand in the mission file
   std::vector<chart::Area> areas;
 };
 

@@ -40,7 +40,9 @@ const std::vector<std::pair<std::string, std::vector<Parameter>>>& parameters() 
       {"solid-body", {{"omega", &AnalyticParams::omega, 1.0}}},
       {"shear", {{"rate", &AnalyticParams::rate, 1.0}}},
       {"double-eddy",
-       {{"A", &AnalyticParams::a, 0.1}, {"epsilon", &AnalyticParams::epsilon, 0.25}, {"omega", &AnalyticParams::omega, 2 * kPi}}},
+       {{"A", &AnalyticParams::a, 0.1},
+        {"epsilon", &AnalyticParams::epsilon, 0.25},
+        {"omega", &AnalyticParams::omega, 2 * kPi}}},
       {"stuart", {}},
       {"tiled", {}},
       {"jet",
@@ -110,23 +112,28 @@ Fields<AnalyticParams> params_fields() {
   Fields<P> f;
   f.maybe_number({"u", "`constant`: eastward part, times `speed_scale_m_per_s`", false, none}, &P::u, 1, any_number());
   f.maybe_number({"v", "`constant`: northward part", false, none}, &P::v, 1, any_number());
-  f.maybe_number({"omega", "`solid-body` (1), `double-eddy` (2π), `jet` (0.4): angular rate", false, none}, &P::omega, 1, any_number());
+  f.maybe_number({"omega", "`solid-body` (1), `double-eddy` (2π), `jet` (0.4): angular rate", false, none}, &P::omega,
+                 1, any_number());
   f.maybe_number({"rate", "`shear` (1): change of the eastward part with y", false, none}, &P::rate, 1, any_number());
   f.maybe_number({"A", "`double-eddy` (0.1): amplitude", false, none}, &P::a, 1, any_number());
-  f.maybe_number({"epsilon", "`double-eddy` (0.25), `jet` (0.3): size of the oscillation", false, none}, &P::epsilon, 1, any_number());
-  f.custom({"dynamic", "`tiled` (false): the eddies travel", false, none}, flag, "",
-           [](const At& at, P& p) {
-             if (const auto value = read_flag(at)) p.dynamic = *value;
-           },
-           [](const P& p, const std::string& path, Effective& out) {
-             out.leaf(path, "dynamic", p.dynamic.value_or(false) ? "true" : "false");
-           });
+  f.maybe_number({"epsilon", "`double-eddy` (0.25), `jet` (0.3): size of the oscillation", false, none}, &P::epsilon, 1,
+                 any_number());
+  f.custom(
+      {"dynamic", "`tiled` (false): the eddies travel", false, none}, flag, "",
+      [](const At& at, P& p) {
+        if (const auto value = read_flag(at)) p.dynamic = *value;
+      },
+      [](const P& p, const std::string& path, Effective& out) {
+        out.leaf(path, "dynamic", p.dynamic.value_or(false) ? "true" : "false");
+      });
   f.maybe_number({"B0", "`jet` (1.2): mean width of the meander", false, none}, &P::b0, 1, any_number());
   f.maybe_number({"theta", "`jet` (π/2): phase", false, none}, &P::theta, 1, any_number());
   f.maybe_number({"k", "`jet` (0.84): wave number", false, none}, &P::k, 1, any_number());
   f.maybe_number({"c", "`jet` (0.12): phase speed", false, none}, &P::c, 1, any_number());
-  f.custom({"list", "`gaussians`: rows of weight, centre x and y, covariance sxx, sxy, syy, velocity vx, vy", false, none}, rows, "",
-           read_gaussians, [](const P& p, const std::string& path, Effective& out) { out.leaf(path, "list", gaussians_text(p.list)); });
+  f.custom(
+      {"list", "`gaussians`: rows of weight, centre x and y, covariance sxx, sxy, syy, velocity vx, vy", false, none},
+      rows, "", read_gaussians,
+      [](const P& p, const std::string& path, Effective& out) { out.leaf(path, "list", gaussians_text(p.list)); });
   return f;
 }
 
@@ -144,7 +151,8 @@ void print_params(const AnalyticDraft& draft, const std::string& path, Effective
   out.open("params");
   for (const auto& parameter : parameters_of(draft.kind))
     out.leaf(path + "." + parameter.name, parameter.name, yaml_number((draft.given.*parameter.member).value_or(0)));
-  if (draft.kind == "tiled") out.leaf(path + ".dynamic", "dynamic", draft.given.dynamic.value_or(false) ? "true" : "false");
+  if (draft.kind == "tiled")
+    out.leaf(path + ".dynamic", "dynamic", draft.given.dynamic.value_or(false) ? "true" : "false");
   if (draft.kind == "gaussians") out.leaf(path + ".list", "list", gaussians_text(draft.given.list));
   out.close();
 }
@@ -162,11 +170,12 @@ const Fields<AnalyticDraft>& analytic_fields() {
     f.section({"origin", "position of x = y = 0", true}, origin);
     f.number({"length_scale_m", "L: metres to one unit of x and y", true}, &A::length_scale, 1, above_zero(1e7));
     f.number({"speed_scale_m_per_s", "V: speed to one unit of (u, v)", true}, &A::speed_scale, 1, above_zero(5));
-    f.maybe_number({"time_scale_s", "T: seconds to one unit of time", false, "L/V"}, &A::time_scale, 1, above_zero(1e10));
+    f.maybe_number({"time_scale_s", "T: seconds to one unit of time", false, "L/V"}, &A::time_scale, 1,
+                   above_zero(1e10));
     f.time({"t0", "when the time of the field is 0", false, "the start time"}, &A::t0);
     f.flag({"south", "the signs of the southern hemisphere (Thesis 5.4–5.5)"}, &A::south);
-    f.custom({"params", "parameters of the kind; in brackets the value when left out"}, params_fields().shape(), "", read_params,
-             print_params);
+    f.custom({"params", "parameters of the kind; in brackets the value when left out"}, params_fields().shape(), "",
+             read_params, print_params);
     return f;
   }();
   return kFields;
@@ -203,25 +212,31 @@ const Fields<CurrentsItem>& item_fields() {
     variables.text({"east", "variable of the eastward velocity", false, "recognised"}, &C::east);
     variables.text({"north", "variable of the northward velocity", false, "recognised"}, &C::north);
     Fields<C> f;
-    f.texts({"files", "forecast files (CF NetCDF); shell patterns; several become one field, the newest cycle wins where they overlap", false, "none"},
+    f.texts({"files",
+             "forecast files (CF NetCDF); shell patterns; several become one field, the newest cycle wins where they "
+             "overlap",
+             false, "none"},
             &C::files, 1);
-    f.custom({"analytic", "a field by formula, for tests and demonstrations", false, "none"}, analytic_fields().shape(), "",
-             [](const At& at, C& c) {
-               if (!expect_map(at)) return;
-               c.analytic.emplace();
-               analytic_fields().read(at, *c.analytic);
-               check_params(at, *c.analytic);
-             },
-             [](const C& c, const std::string& path, Effective& out) {
-               if (!c.analytic) {
-                 out.leaf(path, "analytic", "");
-                 return;
-               }
-               out.open("analytic");
-               analytic_fields().print(*c.analytic, path, out);
-               out.close();
-             });
-    f.word({"outside_time", "what holds before the first and after the last time of the files: the nearest time, the last 24.84 h again and again, or nothing"},
+    f.custom(
+        {"analytic", "a field by formula, for tests and demonstrations", false, "none"}, analytic_fields().shape(), "",
+        [](const At& at, C& c) {
+          if (!expect_map(at)) return;
+          c.analytic.emplace();
+          analytic_fields().read(at, *c.analytic);
+          check_params(at, *c.analytic);
+        },
+        [](const C& c, const std::string& path, Effective& out) {
+          if (!c.analytic) {
+            out.leaf(path, "analytic", "");
+            return;
+          }
+          out.open("analytic");
+          analytic_fields().print(*c.analytic, path, out);
+          out.close();
+        });
+    f.word({"outside_time",
+            "what holds before the first and after the last time of the files: the nearest time, the last 24.84 h "
+            "again and again, or nothing"},
            &C::outside_time,
            std::vector<std::pair<std::string, OutsideTime>>{
                {"hold", OutsideTime::hold}, {"cycle", OutsideTime::cycle}, {"forbid", OutsideTime::forbid}});
@@ -248,7 +263,8 @@ void share(std::vector<CurrentsItem>& items, V CurrentsItem::*member, const std:
     if (setter == none)
       setter = i;
     else if (items[i].*member != items[setter].*member)
-      at.reading.complain(path, "the fields of a list share one " + key + "; " + at.path + "[" + std::to_string(setter) + "] says otherwise");
+      at.reading.complain(path, "the fields of a list share one " + key + "; " + at.path + "[" +
+                                    std::to_string(setter) + "] says otherwise");
   }
   if (setter == none) return;
   const V value = items[setter].*member;
@@ -331,7 +347,8 @@ mission::Currents resolve_currents(const std::vector<CurrentsItem>& items) {
     const auto& draft = *item.analytic;
     mission::AnalyticSpec spec = draft;
     spec.origin = GeoPoint::from_degrees(*draft.lat_deg, *draft.lon_deg).value();
-    for (const auto& parameter : parameters_of(spec.kind)) spec.params.emplace_back(parameter.name, *(draft.given.*parameter.member));
+    for (const auto& parameter : parameters_of(spec.kind))
+      spec.params.emplace_back(parameter.name, *(draft.given.*parameter.member));
     if (spec.kind == "tiled") spec.params.emplace_back("dynamic", draft.given.dynamic.value_or(false) ? 1.0 : 0.0);
     spec.gaussians = draft.given.list;
     currents.analytic.push_back(std::move(spec));

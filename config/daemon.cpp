@@ -31,8 +31,8 @@ struct Draft : DaemonConfig {
 };
 
 bool matches_endpoint(std::string_view text) { return Endpoint::from_text(text).has_value(); }
-const Pattern kEndpoint{"^(\\[[0-9A-Fa-f:]+\\]|[A-Za-z0-9][A-Za-z0-9.-]*):[1-9][0-9]{0,4}$", "HOST:PORT or [IPV6]:PORT, ports 1 to 65535",
-                        matches_endpoint};
+const Pattern kEndpoint{"^(\\[[0-9A-Fa-f:]+\\]|[A-Za-z0-9][A-Za-z0-9.-]*):[1-9][0-9]{0,4}$",
+                        "HOST:PORT or [IPV6]:PORT, ports 1 to 65535", matches_endpoint};
 bool matches_network(std::string_view text) { return Network::from_text(text).has_value(); }
 const Pattern kNetwork{"^[0-9A-Fa-f:.]+(/[0-9]{1,3})?$", "networks such as 192.0.2.0/24, host bits 0", matches_network};
 
@@ -40,13 +40,14 @@ void add_endpoint(Fields<LineDraft>& f, Key key, std::optional<Endpoint> LineDra
   Shape shape;
   shape.pattern = &kEndpoint;
   const auto name = key.name;
-  f.custom(key, shape, "",
-           [member](const At& at, LineDraft& line) {
-             if (const auto text = read_text(at, kEndpoint)) line.*member = Endpoint::from_text(*text);
-           },
-           [member, name](const LineDraft& line, const std::string& path, Effective& out) {
-             out.leaf(path, name, line.*member ? yaml_text((line.*member)->text()) : "");
-           });
+  f.custom(
+      key, shape, "",
+      [member](const At& at, LineDraft& line) {
+        if (const auto text = read_text(at, kEndpoint)) line.*member = Endpoint::from_text(*text);
+      },
+      [member, name](const LineDraft& line, const std::string& path, Effective& out) {
+        out.leaf(path, name, line.*member ? yaml_text((line.*member)->text()) : "");
+      });
 }
 
 Fields<LineDraft> line_fields() {
@@ -57,14 +58,39 @@ Fields<LineDraft> line_fields() {
   networks.kind = Shape::Kind::list;
   networks.parts.push_back(Shape{});
   networks.parts.back().pattern = &kNetwork;
-  f.custom({"allow", "networks that may connect to `listen`; without any only this machine may"}, networks, "[]",
-           [](const At& at, LineDraft& line) {
-             if (!expect_list(at, 0, 64)) return;
-             for (std::size_t i = 0; i < at.node.items.size(); ++i)
-               if (auto text = read_text(at.item(i), kNetwork)) line.allow.push_back(std::move(*text));
-           },
-           [](const LineDraft& line, const std::string& path, Effective& out) { out.leaf(path, "allow", yaml_list(line.allow)); });
+  f.custom(
+      {"allow", "networks that may connect to `listen`; without any only this machine may"}, networks, "[]",
+      [](const At& at, LineDraft& line) {
+        if (!expect_list(at, 0, 64)) return;
+        for (std::size_t i = 0; i < at.node.items.size(); ++i)
+          if (auto text = read_text(at.item(i), kNetwork)) line.allow.push_back(std::move(*text));
+      },
+      [](const LineDraft& line, const std::string& path, Effective& out) {
+        out.leaf(path, "allow", yaml_list(line.allow));
+      });
   return f;
+}
+
+/// What `line:` says as a whole.
+void check_line(const At& at, const LineDraft& line) {
+  const auto complain = [&](const char* key, std::string problem, std::string found, std::string allowed) {
+    at.reading.complain(at.path + key, std::move(problem), std::move(found), std::move(allowed));
+  };
+  const auto is_set = [&](const char* key) { return at.reading.places.count(at.path + key) > 0; };
+  if (is_set(".listen") && is_set(".connect")) complain("", "both listen and connect", {}, "one of the two");
+  if (!is_set(".listen") && !is_set(".connect"))
+    complain("", "neither listen nor connect", {}, "{listen: ADDRESS:PORT} or {connect: HOST:PORT}");
+  if (is_set(".connect") && is_set(".allow")) complain(".allow", "goes with listen only", {}, {});
+  if (!line.listen) return;
+  const auto& host = line.listen->host;
+  const auto address = IpAddress::from_text(host == "localhost" ? "127.0.0.1" : host);
+  if (!address)
+    complain(".listen", "not an address of this machine", shown(host), "an IP address or localhost");
+  else if (!address->is_loopback() && !is_set(".allow"))
+    complain(".listen", "listens beyond this machine without saying to whom", shown(host),
+             "127.0.0.1, or an allow: list of networks beside it");
+  else if (!address->is_loopback() && at.node.find("allow")->items.empty())
+    complain(".allow", "no network, but listen is open beyond this machine", {}, "networks such as 192.0.2.0/24");
 }
 
 void add_clock(Fields<Draft>& f) {
@@ -76,33 +102,49 @@ void add_clock(Fields<Draft>& f) {
     s.text({"simulated", "socket of glidersim, which then hands out the time", true}, &Simulated::socket);
     return s;
   }();
-  f.custom({"clock", "`system`, or the clock of a simulation: nothing then leaves the simulation's folders"},
-           Fields<Draft>::any_of({Fields<Draft>::word_shape({"system"}), kFields.shape()}), "system",
-           [](const At& at, Draft& d) {
-             if (!at.node.is(Node::Kind::map)) {
-               (void)read_word(at, {"system"});
-               return;
-             }
-             Simulated s;
-             kFields.read(at, s);
-             d.simulated_clock = path_beside(at.reading.problems.file(), s.socket);
-           },
-           [](const Draft& d, const std::string& path, Effective& out) {
-             out.leaf(path, "clock", d.simulated_clock ? "{simulated: " + yaml_text(*d.simulated_clock) + "}" : "system");
-           });
+  f.custom(
+      {"clock", "`system`, or the clock of a simulation: nothing then leaves the simulation's folders"},
+      Fields<Draft>::any_of({Fields<Draft>::word_shape({"system"}), kFields.shape()}), "system",
+      [](const At& at, Draft& d) {
+        if (!at.node.is(Node::Kind::map)) {
+          (void)read_word(at, {"system"});
+          return;
+        }
+        Simulated s;
+        kFields.read(at, s);
+        d.simulated_clock = path_beside(at.reading.problems.file(), s.socket);
+      },
+      [](const Draft& d, const std::string& path, Effective& out) {
+        out.leaf(path, "clock", d.simulated_clock ? "{simulated: " + yaml_text(*d.simulated_clock) + "}" : "system");
+      });
 }
 
 const Fields<Draft>& fields() {
   static const Fields<Draft> kFields = [] {
     Fields<EntryDraft> glider;
     glider.text({"name", "name as the glider's dialog says it, in lower case", true}, &EntryDraft::name, kName);
-    glider.part({"line", "where its dialog comes from: `listen` or `connect`", true}, &EntryDraft::draft, line_fields());
+    const auto line = line_fields();
+    glider.custom(
+        {"line", "where its dialog comes from: `listen` or `connect`", true}, line.shape(), "",
+        [line](const At& at, EntryDraft& entry) {
+          if (!expect_map(at)) return;
+          line.read(at, entry.draft);
+          check_line(at, entry.draft);
+        },
+        [line](const EntryDraft& entry, const std::string& path, Effective& out) {
+          out.open("line");
+          line.print(entry.draft, path, out);
+          out.close();
+        });
     glider.text({"to_glider", "the dockserver's folder of files for this glider", true}, &EntryDraft::to_glider);
-    glider.flag({"clock_skew_ok", "the glider's clock is known to differ by more than 5 min: emit nevertheless"}, &EntryDraft::clock_skew_ok);
+    glider.flag({"clock_skew_ok", "the glider's clock is known to differ by more than 5 min: emit nevertheless"},
+                &EntryDraft::clock_skew_ok);
     Fields<Draft> log;
     log.word({"level", "least level that is logged"}, &Draft::log_level,
-             std::vector<std::pair<std::string, LogLevel>>{
-                 {"debug", LogLevel::debug}, {"info", LogLevel::info}, {"warn", LogLevel::warn}, {"error", LogLevel::error}});
+             std::vector<std::pair<std::string, LogLevel>>{{"debug", LogLevel::debug},
+                                                           {"info", LogLevel::info},
+                                                           {"warn", LogLevel::warn},
+                                                           {"error", LogLevel::error}});
     Fields<Draft> f;
     f.constant({"schema", "what this file is", true}, kDaemonSchema);
     add_clock(f);
@@ -124,25 +166,6 @@ std::string without_slash(std::string path) {
   return path;
 }
 
-void check_line(const EntryDraft& entry, const std::string& path, Reading& reading) {
-  const auto is_set = [&](const char* key) { return reading.places.count(path + ".line." + key) > 0; };
-  if (reading.places.count(path + ".line") == 0) return;  // reported as missing
-  if (is_set("listen") && is_set("connect")) reading.complain(path + ".line", "both listen and connect", {}, "one of the two");
-  if (!is_set("listen") && !is_set("connect"))
-    reading.complain(path + ".line", "neither listen nor connect", {}, "{listen: ADDRESS:PORT} or {connect: HOST:PORT}");
-  if (is_set("connect") && is_set("allow")) reading.complain(path + ".line.allow", "goes with listen only");
-  if (!entry.draft.listen) return;
-  const auto& host = entry.draft.listen->host;
-  const auto address = host == "localhost" ? IpAddress::from_text("127.0.0.1") : IpAddress::from_text(host);
-  if (!address)
-    reading.complain(path + ".line.listen", "not an address of this machine", shown(host), "an IP address or localhost");
-  else if (!address->is_loopback() && entry.draft.allow.empty() && !is_set("allow"))
-    reading.complain(path + ".line.listen", "listens beyond this machine without saying to whom", shown(host),
-                     "127.0.0.1, or an allow: list of networks beside it");
-  else if (!address->is_loopback() && entry.draft.allow.empty() && is_set("allow"))
-    reading.complain(path + ".line.allow", "no network, but listen is open beyond this machine", {}, "networks such as 192.0.2.0/24");
-}
-
 /// Says that a value which must be one glider's own stands twice.
 class Unique {
  public:
@@ -151,7 +174,9 @@ class Unique {
     if (value.empty()) return;
     const auto [first, is_new] = first_.emplace(value, path);
     if (!is_new)
-      reading_.complain(path, "two gliders with one " + what_ + "; the first stands in line " + std::to_string(reading_.place_of(first->second).line),
+      reading_.complain(path,
+                        "two gliders with one " + what_ + "; the first stands in line " +
+                            std::to_string(reading_.place_of(first->second).line),
                         shown(shown_value));
   }
 
@@ -162,15 +187,18 @@ class Unique {
 };
 
 void check_gliders(const Draft& d, Reading& reading) {
-  Unique names{reading, "name"}, ports{reading, "port"}, peers{reading, "host and port"}, folders{reading, "to_glider folder"};
+  Unique names{reading, "name"}, ports{reading, "port"}, peers{reading, "host and port"},
+      folders{reading, "to_glider folder"};
   for (std::size_t i = 0; i < d.entries.size(); ++i) {
     const auto& entry = d.entries[i];
     const auto path = "gliders[" + std::to_string(i) + "]";
-    check_line(entry, path, reading);
     names.add(entry.name, path + ".name", entry.name);
-    if (entry.draft.listen) ports.add(std::to_string(entry.draft.listen->port), path + ".line.listen", entry.draft.listen->text());
-    if (entry.draft.connect) peers.add(entry.draft.connect->text(), path + ".line.connect", entry.draft.connect->text());
-    folders.add(without_slash(path_beside(reading.problems.file(), entry.to_glider)), path + ".to_glider", entry.to_glider);
+    if (entry.draft.listen)
+      ports.add(std::to_string(entry.draft.listen->port), path + ".line.listen", entry.draft.listen->text());
+    if (entry.draft.connect)
+      peers.add(entry.draft.connect->text(), path + ".line.connect", entry.draft.connect->text());
+    folders.add(without_slash(path_beside(reading.problems.file(), entry.to_glider)), path + ".to_glider",
+                entry.to_glider);
   }
 }
 

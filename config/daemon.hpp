@@ -45,9 +45,9 @@ struct DaemonConfig {
   std::string state_dir{"/var/lib/glidehelm"};  ///< journal, grids
   std::string control_socket{"/run/glidehelm/control.sock"};
   std::vector<std::string> missions{"missions.d/*.yaml"};  ///< shell patterns of mission files; resolved
-  std::string coast;                            ///< coast file of missions that name none; empty: none
+  std::string coast;                                       ///< coast file of missions that name none; empty: none
   LogLevel log_level{LogLevel::info};
-  std::vector<GliderEntry> gliders;             ///< at least one
+  std::vector<GliderEntry> gliders;  ///< at least one
   friend bool operator==(const DaemonConfig&, const DaemonConfig&) = default;
 };
 

@@ -29,10 +29,12 @@ ConfigError at_key(const LoadedMission& m, const std::string& key, std::string p
   return error;
 }
 
-std::string next_name(const mission::Mission& m) { return m.after_goal.empty() ? std::string{} : m.after_goal.substr(5); }
+std::string next_name(const mission::Mission& m) {
+  return m.after_goal.empty() ? std::string{} : m.after_goal.substr(5);
+}
 
-std::vector<std::string> mission_files(const DaemonConfig& daemon, const std::string& daemon_file, const Sources& sources,
-                                       std::vector<ConfigError>& errors) {
+std::vector<std::string> mission_files(const DaemonConfig& daemon, const std::string& daemon_file,
+                                       const Sources& sources, std::vector<ConfigError>& errors) {
   std::vector<std::string> files;
   for (const auto& pattern : daemon.missions) {
     const auto found = sources.matches(pattern);
@@ -62,7 +64,9 @@ void check_names(const Configuration& c, std::vector<ConfigError>& errors) {
   std::map<std::string, std::string> first;
   for (const auto& m : c.missions) {
     const auto [other, is_new] = first.emplace(m.mission.name, m.file);
-    if (!is_new) errors.push_back(at_key(m, "name", "two missions named " + m.mission.name + "; the other stands in " + other->second));
+    if (!is_new)
+      errors.push_back(
+          at_key(m, "name", "two missions named " + m.mission.name + "; the other stands in " + other->second));
   }
 }
 
@@ -89,7 +93,8 @@ void check_one_each(const Configuration& c, std::vector<ConfigError>& errors) {
     if (!m.follows.empty()) continue;
     const auto [first, is_new] = flown.emplace(m.mission.glider, &m);
     if (!is_new)
-      errors.push_back(at_key(m, "glider", "two missions for glider " + m.mission.glider + "; the other is " + first->second->file));
+      errors.push_back(
+          at_key(m, "glider", "two missions for glider " + m.mission.glider + "; the other is " + first->second->file));
   }
 }
 
@@ -100,7 +105,8 @@ void check_circles(const Configuration& c, std::vector<ConfigError>& errors) {
   for (const auto& m : c.missions) {
     auto name = m.mission.name;
     for (std::size_t steps = 0; steps <= c.missions.size() && !name.empty(); ++steps) name = follows[name];
-    if (!name.empty()) errors.push_back(at_key(m, "after_goal", "follows, in a circle, a mission that follows it: none begins"));
+    if (!name.empty())
+      errors.push_back(at_key(m, "after_goal", "follows, in a circle, a mission that follows it: none begins"));
   }
 }
 
@@ -108,7 +114,8 @@ void check_circles(const Configuration& c, std::vector<ConfigError>& errors) {
 
 Expected<Configuration, std::vector<ConfigError>> load(const std::string& daemon_file, const Sources& sources) {
   const auto text = sources.read(daemon_file);
-  if (!text) return unexpected(std::vector<ConfigError>{whole_file(daemon_file, "", "cannot be read: " + text.error().reason)});
+  if (!text)
+    return unexpected(std::vector<ConfigError>{whole_file(daemon_file, "", "cannot be read: " + text.error().reason)});
   auto daemon = read_daemon_file(*text, daemon_file);
   if (!daemon) return unexpected(std::vector<ConfigError>{daemon.error()});
 

@@ -13,23 +13,24 @@ namespace glidehelm::config {
 
 /// How files are reached: config/ opens none itself.
 struct Sources {
-  LoadFile read;                                                                ///< bytes of a file
-  std::function<std::vector<std::string>(const std::string& pattern)> matches;  ///< existing files of a shell pattern, sorted
+  LoadFile read;  ///< bytes of a file
+  std::function<std::vector<std::string>(const std::string& pattern)>
+      matches;  ///< existing files of a shell pattern, sorted
 };
 
 struct LoadedMission {
-  std::string file;       ///< path, from the patterns of the daemon file
+  std::string file;          ///< path, from the patterns of the daemon file
   mission::Mission mission;  ///< with the daemon's `coast` where the mission names none
-  std::string text;       ///< bytes of the file, as read
-  Sha256 sha256;          ///< of `text`
-  std::string follows;    ///< name of the mission whose `after_goal` leads here; empty: it begins
+  std::string text;          ///< bytes of the file, as read
+  Sha256 sha256;             ///< of `text`
+  std::string follows;       ///< name of the mission whose `after_goal` leads here; empty: it begins
   friend bool operator==(const LoadedMission&, const LoadedMission&) = default;
 };
 
 struct Configuration {
   std::string file;  ///< the daemon file
   DaemonConfig daemon;
-  Sha256 sha256;     ///< of the daemon file's bytes
+  Sha256 sha256;  ///< of the daemon file's bytes
   /// In the order of the patterns, then by name. Each glider has at most one mission with an empty `follows`; that one is
   /// flown, the others wait for their turn.
   std::vector<LoadedMission> missions;

@@ -67,60 +67,77 @@ Fields<Draft> start_fields() {
 
 Fields<Draft> vehicle_fields() {
   Fields<Draft> f;
-  f.number({"horizontal_speed_m_per_s", "speed through water, horizontal part: U·cos(glide angle)"}, &Draft::horizontal_speed, 1, above(0, 2));
+  f.number({"horizontal_speed_m_per_s", "speed through water, horizontal part: U·cos(glide angle)"},
+           &Draft::horizontal_speed, 1, above(0, 2));
   f.number({"glide_angle_deg", "angle of the path below the horizon"}, &Draft::glide_angle, kDegree, from_to(5, 60));
   f.number({"dive_depth_m", "lower turning depth of the yo"}, &Draft::dive_depth, 1, above(0, 1500));
-  f.number({"climb_to_m", "upper turning depth of the yo; above `dive_depth_m`"}, &Draft::climb_to, 1, from_to(0, 1500));
-  f.whole({"current_correction", "`u_use_current_correction` of the glider: 0 steers without currents, 1 with the last measured one"},
+  f.number({"climb_to_m", "upper turning depth of the yo; above `dive_depth_m`"}, &Draft::climb_to, 1,
+           from_to(0, 1500));
+  f.whole({"current_correction",
+           "`u_use_current_correction` of the glider: 0 steers without currents, 1 with the last measured one"},
           &Draft::current_correction, from_to(0, 1));
-  f.maybe_number({"local_frame_rotation_deg", "rotation of the glider's local frame against east and north", false, "learned; 0 until then"},
+  f.maybe_number({"local_frame_rotation_deg", "rotation of the glider's local frame against east and north", false,
+                  "learned; 0 until then"},
                  &Draft::frame_rotation, kDegree, from_to(-180, 180));
   return f;
 }
 
 Fields<Draft> schedule_fields() {
   Fields<Draft> f;
-  f.maybe_number({"stint_h", "time under water between two surfacings; not together with `half_cycles`", false, "4, or what `half_cycles` gives"},
+  f.maybe_number({"stint_h", "time under water between two surfacings; not together with `half_cycles`", false,
+                  "4, or what `half_cycles` gives"},
                  &Draft::stint_given, kHour, from_to(kShortestStint_h, kLongestStint_h));
   f.number({"surface_min", "time at the surface between two stints"}, &Draft::surface, kMinute, from_to(0, 240));
   f.maybe_number({"first_stint_h", "time under water of the first stint"}, &Draft::first_stint_given, kHour,
                  from_to(kShortestStint_h, kLongestStint_h), "same");
-  f.maybe_whole({"half_cycles", "dives and climbs of the yo in one stint, instead of `stint_h`", false, "none"}, &Draft::half_cycles, from_to(1, 1000));
+  f.maybe_whole({"half_cycles", "dives and climbs of the yo in one stint, instead of `stint_h`", false, "none"},
+                &Draft::half_cycles, from_to(1, 1000));
   return f;
 }
 
 Fields<Draft> planning_fields() {
   Fields<Draft> f;
-  const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"}, {"cts-astar", "cts-astar"}, {"best", "best"}};
+  const std::vector<std::pair<std::string, std::string>> methods{
+      {"direct", "direct"}, {"cts-astar", "cts-astar"}, {"best", "best"}};
   f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
-         {"astar", "abs-cts-astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization", "iterative-optimization", "zermelo"});
+         {"astar", "abs-cts-astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization",
+          "iterative-optimization", "zermelo"});
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
-  f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"}, &Draft::cell, kKilometre,
-                 above(0, 1000), "auto");
+  f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
+                 &Draft::cell, kKilometre, above(0, 1000), "auto");
   f.number({"budget_s", "time after the fix at which the best plan so far goes out"}, &Draft::budget, 1, above(0, 900));
-  f.maybe_number({"horizon_h", "longest travel time looked at; `auto`: three times that through still water"}, &Draft::horizon, kHour,
-                 above(0, 8784), "auto");
+  f.maybe_number({"horizon_h", "longest travel time looked at; `auto`: three times that through still water"},
+                 &Draft::horizon, kHour, above(0, 8784), "auto");
   f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
   return f;
 }
 
 void add_areas(Fields<Draft>& f, const char* key, const char* meaning, AreasDraft Draft::*member) {
-  f.custom({key, meaning}, areas_shape(), "[]", [member](const At& at, Draft& d) { read_areas(at, d.*member); },
-           [member, key](const Draft& d, const std::string& path, Effective& out) { print_areas(d.*member, path, key, out); });
+  f.custom(
+      {key, meaning}, areas_shape(), "[]", [member](const At& at, Draft& d) { read_areas(at, d.*member); },
+      [member, key](const Draft& d, const std::string& path, Effective& out) {
+        print_areas(d.*member, path, key, out);
+      });
 }
 
 Fields<Draft> safety_fields() {
   Fields<Draft> f;
-  f.text({"coast", "coast file, cut with `glidehelm coast`", false, "that of the daemon file, else the land of the forecast, with a warning"},
+  f.text({"coast", "coast file, cut with `glidehelm coast`", false,
+          "that of the daemon file, else the land of the forecast, with a warning"},
          &Draft::coast_file);
-  f.number({"min_distance_to_coast_m", "distance that the track keeps from the coast and from the border of every area"},
-           &Draft::min_distance_to_coast, 1, from_to(0, 50'000));
-  f.maybe_number({"min_water_depth_m", "least depth of water; needs bathymetry, which this version does not read", false, "none"},
-                 &Draft::min_water_depth, 1, from_to(0, 11'000));
-  f.number({"depth_margin_m", "water under the yo; judged once bathymetry is read, not in this version"}, &Draft::depth_margin, 1, from_to(0, 1000));
+  f.number(
+      {"min_distance_to_coast_m", "distance that the track keeps from the coast and from the border of every area"},
+      &Draft::min_distance_to_coast, 1, from_to(0, 50'000));
+  f.maybe_number(
+      {"min_water_depth_m", "least depth of water; needs bathymetry, which this version does not read", false, "none"},
+      &Draft::min_water_depth, 1, from_to(0, 11'000));
+  f.number({"depth_margin_m", "water under the yo; judged once bathymetry is read, not in this version"},
+           &Draft::depth_margin, 1, from_to(0, 1000));
   add_areas(f, "keep_in", "the glider stays inside one of these polygons; none: everywhere", &Draft::inside);
   add_areas(f, "keep_out", "the glider stays outside all of these polygons", &Draft::outside);
-  f.maybe_number({"max_wpt_distance_m", "`max_wpt_distance` of the glider's mission: a waypoint beyond aborts it; legs stay below 0.9 of it", false, "none"},
+  f.maybe_number({"max_wpt_distance_m",
+                  "`max_wpt_distance` of the glider's mission: a waypoint beyond aborts it; legs stay below 0.9 of it",
+                  false, "none"},
                  &Draft::max_wpt_distance, 1, above(0, 1e7));
   return f;
 }
@@ -130,8 +147,8 @@ Fields<Draft> list_fields() {
   Fields<Draft> f;
   f.whole({"slot", "NN of `goto_lNN.ma`"}, &Draft::slot, from_to(0, 99));
   f.whole({"max_waypoints", "longest list that the glider takes"}, &Draft::max_waypoints, from_to(1, 8));
-  f.maybe_number({"radius_m", "distance at which a waypoint counts as reached; `auto`: 10 % of the median leg"}, &Draft::list_radius, 1,
-                 from_to(10, 100'000), "auto");
+  f.maybe_number({"radius_m", "distance at which a waypoint counts as reached; `auto`: 10 % of the median leg"},
+                 &Draft::list_radius, 1, from_to(10, 100'000), "auto");
   f.word({"at_end", "after the last waypoint: back to the first, or wait for the next file"}, &Draft::at_end,
          std::vector<std::pair<std::string, AtEnd>>{{"loop", AtEnd::loop}, {"wait", AtEnd::wait}});
   return f;
@@ -139,38 +156,48 @@ Fields<Draft> list_fields() {
 
 Fields<Draft> window_fields() {
   Fields<Draft> f;
-  f.number({"max_min", "longest time from the fix to the dive that is counted on, whatever the dialog says"}, &Draft::window_max, kMinute, above(0, 120));
-  f.number({"dockzr_after_s", "time from the call to the moment at which the dockserver's script sends files"}, &Draft::dockzr_after, 1, from_to(0, 900));
-  f.word({"emit_on", "the file goes out once the at-surface block has named the mission, or already on the connection block"},
-         &Draft::emit_on_connection, std::vector<std::pair<std::string, bool>>{{"at_surface", false}, {"connection", true}});
+  f.number({"max_min", "longest time from the fix to the dive that is counted on, whatever the dialog says"},
+           &Draft::window_max, kMinute, above(0, 120));
+  f.number({"dockzr_after_s", "time from the call to the moment at which the dockserver's script sends files"},
+           &Draft::dockzr_after, 1, from_to(0, 900));
+  f.word({"emit_on",
+          "the file goes out once the at-surface block has named the mission, or already on the connection block"},
+         &Draft::emit_on_connection,
+         std::vector<std::pair<std::string, bool>>{{"at_surface", false}, {"connection", true}});
   return f;
 }
 
 const Fields<Draft>& fields() {
   static const Fields<Draft> kFields = [] {
     Fields<Draft> approval;
-    approval.word({"mode", "`manual`: propose, emit nothing; `auto-if-safe`: emit what the verifier accepts if nothing is unusual; `auto`: emit what the verifier accepts"},
-                  &Draft::approval,
-                  std::vector<std::pair<std::string, Approval>>{
-                      {"manual", Approval::manual}, {"auto-if-safe", Approval::auto_if_safe}, {"auto", Approval::automatic}});
+    approval.word(
+        {"mode",
+         "`manual`: propose, emit nothing; `auto-if-safe`: emit what the verifier accepts if nothing is unusual; "
+         "`auto`: emit what the verifier accepts"},
+        &Draft::approval,
+        std::vector<std::pair<std::string, Approval>>{
+            {"manual", Approval::manual}, {"auto-if-safe", Approval::auto_if_safe}, {"auto", Approval::automatic}});
     Fields<Draft> f;
     f.constant({"schema", "what this file is", true}, kMissionSchema);
     f.text({"name", "name of the mission, in logs and for `after_goal`", true}, &Draft::name, kName);
     f.text({"glider", "glider that flies it, as in the daemon file", true}, &Draft::glider, kName);
-    f.text({"glider_mission", "mission that must run on the glider; another one is not steered", false, "any"}, &Draft::slocum_mission, kMi);
+    f.text({"glider_mission", "mission that must run on the glider; another one is not steered", false, "any"},
+           &Draft::slocum_mission, kMi);
     f.section({"goal", "where to", true}, goal_fields());
     f.section({"start", "where from, for `plan` and `rehearse`; in service the fix decides"}, start_fields());
     f.section({"vehicle", "the glider as it is expected to fly"}, vehicle_fields());
     f.section({"schedule", "when it dives and surfaces"}, schedule_fields());
-    f.custom({"currents", "what the water does; a list adds fields", true}, currents_shape(), "",
-             [](const At& at, Draft& d) { read_currents(at, d.fields); },
-             [](const Draft& d, const std::string& path, Effective& out) { print_currents(d.fields, path, out); });
+    f.custom(
+        {"currents", "what the water does; a list adds fields", true}, currents_shape(), "",
+        [](const At& at, Draft& d) { read_currents(at, d.fields); },
+        [](const Draft& d, const std::string& path, Effective& out) { print_currents(d.fields, path, out); });
     f.section({"planning", "how the way is found"}, planning_fields());
     f.section({"safety", "what the verifier holds every file against"}, safety_fields());
     f.section({"list", "the waypoint file"}, list_fields());
     f.section({"window", "the time at the surface"}, window_fields());
     f.section({"approval", "who lets a file out"}, approval);
-    f.text({"after_goal", "`next NAME`: that mission takes over at the goal", false, "the glider stays at the goal"}, &Draft::after_goal, kNext);
+    f.text({"after_goal", "`next NAME`: that mission takes over at the goal", false, "the glider stays at the goal"},
+           &Draft::after_goal, kNext);
     return f;
   }();
   return kFields;
@@ -179,8 +206,9 @@ const Fields<Draft>& fields() {
 void check_positions(const Draft& d, Reading& reading) {
   if (d.goal_lat && d.goal_lon && *d.goal_lat == 0 && *d.goal_lon == 0)
     reading.complain("goal", "latitude 0, longitude 0 is no goal but a position that was never set");
-  if (d.start_lat && !d.start_lon) reading.complain("start.lon_deg", "missing; start.lat_deg is set");
-  if (d.start_lon && !d.start_lat) reading.complain("start.lat_deg", "missing; start.lon_deg is set");
+  const bool lat = reading.places.count("start.lat_deg") > 0, lon = reading.places.count("start.lon_deg") > 0;
+  if (lat && !lon) reading.complain("start.lon_deg", "missing; start.lat_deg is set");
+  if (lon && !lat) reading.complain("start.lat_deg", "missing; start.lon_deg is set");
 }
 
 void check_vehicle(const Draft& d, Reading& reading) {
@@ -198,13 +226,14 @@ void check_schedule(const Draft& d, Reading& reading) {
   if (d.climb_to >= d.dive_depth) return;  // reported; the stint would be nonsense
   const double hours = stint_of_half_cycles(*d.half_cycles, d).count() / kHour;
   if (!from_to(kShortestStint_h, kLongestStint_h).contains(hours))
-    reading.complain("schedule.half_cycles", "gives a stint of " + yaml_number(std::round(hours * 100) / 100) + " h", {},
-                     "a stint of " + from_to(kShortestStint_h, kLongestStint_h).text() + " h");
+    reading.complain("schedule.half_cycles", "gives a stint of " + yaml_number(std::round(hours * 100) / 100) + " h",
+                     {}, "a stint of " + from_to(kShortestStint_h, kLongestStint_h).text() + " h");
 }
 
 void check_safety(const Draft& d, Reading& reading) {
   if (d.min_water_depth)
-    reading.complain("safety.min_water_depth_m", "depth limits need bathymetry, which this version does not read; leave the key out");
+    reading.complain("safety.min_water_depth_m",
+                     "depth limits need bathymetry, which this version does not read; leave the key out");
 }
 
 /// Works out what depends on several keys. Only for a draft without error.
@@ -231,7 +260,8 @@ Seconds stint_of_half_cycles(int half_cycles, const Mission& m) {
   return vertical / (m.horizontal_speed * std::tan(m.glide_angle.si()));
 }
 
-Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file, const LoadFile& load) {
+Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file,
+                                                                  const LoadFile& load) {
   auto document = read_yaml(text, file);
   Reading reading{file};
   for (auto& error : document.errors) reading.problems.add(std::move(error));
@@ -256,7 +286,8 @@ Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_vi
   return MissionFile{static_cast<const Mission&>(draft), effective.text()};
 }
 
-Expected<Mission, std::vector<ConfigError>> read_mission(std::string_view text, const std::string& file, const LoadFile& load) {
+Expected<Mission, std::vector<ConfigError>> read_mission(std::string_view text, const std::string& file,
+                                                         const LoadFile& load) {
   auto result = read_mission_file(text, file, load);
   if (!result) return unexpected(std::vector<ConfigError>{result.error()});
   return std::move(result->mission);

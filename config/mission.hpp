@@ -28,10 +28,12 @@ struct MissionFile {
 ///
 /// Checks what the file alone can tell. That the goal is in water, that forecasts exist and reach, needs currents and
 /// coast and is checked where they are known. Deterministic; throws nothing.
-Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file, const LoadFile& load);
+Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file,
+                                                                  const LoadFile& load);
 
 /// `read_mission_file` without the YAML.
-Expected<mission::Mission, std::vector<ConfigError>> read_mission(std::string_view text, const std::string& file, const LoadFile& load);
+Expected<mission::Mission, std::vector<ConfigError>> read_mission(std::string_view text, const std::string& file,
+                                                                  const LoadFile& load);
 
 /// Every key of a mission file as declared: for the JSON Schema and the key table.
 Shape mission_shape();

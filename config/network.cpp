@@ -133,7 +133,8 @@ std::optional<Endpoint> Endpoint::from_text(std::string_view text) {
   auto host = text.substr(0, colon);
   const bool bracketed = host.size() > 2 && host.front() == '[' && host.back() == ']';
   if (bracketed) host = host.substr(1, host.size() - 2);
-  const bool right = bracketed ? host.find(':') != std::string_view::npos && IpAddress::from_text(host).has_value() : is_host(host);
+  const bool right =
+      bracketed ? host.find(':') != std::string_view::npos && IpAddress::from_text(host).has_value() : is_host(host);
   if (!port || *port == 0 || !right) return std::nullopt;
   return Endpoint{std::string{host}, static_cast<std::uint16_t>(*port)};
 }

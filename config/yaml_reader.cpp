@@ -103,13 +103,33 @@ class Lines {
     return std::min(starts_[line] + static_cast<std::size_t>(mark.column), text_.size());
   }
 
-  [[nodiscard]] Place place(std::size_t offset) const {
+  /// Places are asked for in the order of the text, mostly: counting goes on from the last one on a line, so that one
+  /// line with all values of a file does not cost the square of its length.
+  [[nodiscard]] Place place(std::size_t offset) {
     const auto next = std::upper_bound(starts_.begin(), starts_.end(), offset);
     const auto start = *(next - 1);
-    const auto characters =
-        std::count_if(text_.begin() + static_cast<std::ptrdiff_t>(start), text_.begin() + static_cast<std::ptrdiff_t>(offset),
-                      [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-    return {static_cast<int>(next - starts_.begin()), static_cast<int>(characters) + 1};
+    if (counted_to_ < start || counted_to_ > offset) {
+      counted_to_ = start;
+      characters_ = 0;
+    }
+    for (; counted_to_ < offset; ++counted_to_)
+      if ((static_cast<unsigned char>(text_[counted_to_]) & 0xC0U) != 0x80U) ++characters_;
+    return {static_cast<int>(next - starts_.begin()), characters_ + 1};
+  }
+
+  /// False when a quoted text begins here and the file ends before it does: yaml-cpp takes that for the whole text.
+  [[nodiscard]] bool quote_ends(std::size_t offset) const {
+    const char quote = at(offset);
+    if (quote != '"' && quote != '\'') return true;
+    for (std::size_t i = offset + 1; i < text_.size(); ++i) {
+      if (quote == '"' && text_[i] == '\\')
+        ++i;
+      else if (quote == '\'' && text_[i] == quote && at(i + 1) == quote)
+        ++i;
+      else if (text_[i] == quote)
+        return true;
+    }
+    return false;
   }
 
   [[nodiscard]] char at(std::size_t offset) const { return offset < text_.size() ? text_[offset] : '\0'; }
@@ -117,6 +137,8 @@ class Lines {
  private:
   std::string_view text_;
   std::vector<std::size_t> starts_;
+  std::size_t counted_to_{};
+  int characters_{};  ///< from the start of the line to `counted_to_`
 };
 
 /// Length of the UTF-8 sequence at `i`; 0 when it is none (overlong, surrogate and too large included).
@@ -139,7 +161,7 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
 
 /// Reports bytes that no configuration holds. True when yaml-cpp may see the text (tabs replaced by blanks): it takes
 /// the byte 04 for the end of the file and replaces broken UTF-8 without a word.
-bool check_characters(std::string& text, const Lines& lines, Problems& problems) {
+bool check_characters(std::string& text, Lines& lines, Problems& problems) {
   bool clean = true;
   int last_line = 0;  // one report per line is enough
   for (std::size_t i = 0; i < text.size();) {
@@ -151,8 +173,11 @@ bool check_characters(std::string& text, const Lines& lines, Problems& problems)
     if (length == 0 || control || byte == '\t') {
       const auto at = lines.place(i);
       if (at.line != last_line)
-        problems.add(at, {}, length == 0 ? "not UTF-8 text" : control ? "control character" : "tab", shown(text.substr(i, 1)),
-                     byte == '\t' ? "blanks" : "");
+        problems.add(at, {},
+                     length == 0 ? "not UTF-8 text"
+                     : control   ? "control character"
+                                 : "tab",
+                     shown(text.substr(i, 1)), byte == '\t' ? "blanks" : "");
       last_line = at.line;
       if (byte == '\t')
         text[i] = ' ';
@@ -169,7 +194,7 @@ struct Enough {};
 
 class Builder : public YAML::EventHandler {
  public:
-  Builder(const Lines& lines, Problems& problems) : lines_{lines}, problems_{problems} {}
+  Builder(Lines& lines, Problems& problems) : lines_{lines}, problems_{problems} {}
 
   Node root;
   bool complete{};  ///< `root` is the whole first document
@@ -190,17 +215,22 @@ class Builder : public YAML::EventHandler {
     problems_.add(place(mark), path(), "aliases are not taken", "*", "the value itself");
     attach(counted(Node::Kind::broken, mark));
   }
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
     Node node = started(Node::Kind::scalar, mark, tag, anchor);
     node.quoted = tag == "!";
     node.text = value;
+    if (!lines_.quote_ends(lines_.offset(mark)))
+      problems_.add(node.place, path(), "a quote that does not end", shown(value));
     attach(std::move(node));
   }
-  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
     open(started(Node::Kind::list, mark, tag, anchor));
   }
   void OnSequenceEnd() override { close(); }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open(started(Node::Kind::map, mark, tag, anchor));
   }
   void OnMapEnd() override { close(); }
@@ -213,10 +243,10 @@ class Builder : public YAML::EventHandler {
     std::map<std::string, Place> seen{};  ///< keys so far
   };
 
-  [[nodiscard]] Place place(const YAML::Mark& mark) const { return lines_.place(lines_.offset(mark)); }
+  [[nodiscard]] Place place(const YAML::Mark& mark) { return lines_.place(lines_.offset(mark)); }
 
   /// yaml-cpp marks an absent value with the token after it: the key is what a reader looks for.
-  [[nodiscard]] Place place_of_empty(const YAML::Mark& mark) const {
+  [[nodiscard]] Place place_of_empty(const YAML::Mark& mark) {
     if (!frames_.empty() && frames_.back().node.is(Node::Kind::map) && frames_.back().pending)
       return frames_.back().pending->place;
     auto offset = lines_.offset(mark);
@@ -292,7 +322,8 @@ class Builder : public YAML::EventHandler {
     }
     const auto [first, is_new] = frame.seen.emplace(node.text, node.place);
     if (!is_new) {
-      problems_.add(node.place, child_path(shown(node.text)), "duplicate key; it stands first in line " + std::to_string(first->second.line));
+      problems_.add(node.place, child_path(shown(node.text)),
+                    "duplicate key; it stands first in line " + std::to_string(first->second.line));
       return;
     }
     frame.pending = Member{std::move(node.text), node.place, {}};
@@ -317,7 +348,7 @@ class Builder : public YAML::EventHandler {
     return result;
   }
 
-  const Lines& lines_;
+  Lines& lines_;
   Problems& problems_;
   std::vector<Frame> frames_;
   std::size_t values_{};
@@ -325,7 +356,7 @@ class Builder : public YAML::EventHandler {
 };
 
 /// True when the text is YAML to its end.
-bool parse(const std::string& text, const Lines& lines, Builder& builder, Problems& problems) {
+bool parse(const std::string& text, Lines& lines, Builder& builder, Problems& problems) {
   try {
     std::istringstream stream{text};
     YAML::Parser parser{stream};
@@ -356,7 +387,7 @@ Document read_yaml(std::string_view text, std::string file) {
   }
   if (text.substr(0, 3) == "\xEF\xBB\xBF") text.remove_prefix(3);
   std::string copy{text};
-  const Lines lines{text};
+  Lines lines{text};
   if (check_characters(copy, lines, problems)) {
     Builder builder{lines, problems};
     document.readable = parse(copy, lines, builder, problems);

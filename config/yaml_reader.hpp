@@ -19,11 +19,11 @@ struct Place {
 struct ConfigError {
   std::string file;
   int line{}, column{};  ///< 0 when the file as a whole is meant (it could not be read, two files disagree)
-  std::string key;       ///< path of the key: `planning.headings`, `gliders[1].name` (lists count from 0); empty: the file
-  std::string problem;   ///< what is wrong, in words
-  std::string found;     ///< what stands there, as written; empty when nothing does
-  std::string allowed;   ///< what may stand there; empty when `problem` says it
-  std::string nearest;   ///< the valid key or word nearest to what was found; empty when none is near
+  std::string key;  ///< path of the key: `planning.headings`, `gliders[1].name` (lists count from 0); empty: the file
+  std::string problem;  ///< what is wrong, in words
+  std::string found;    ///< what stands there, as written; empty when nothing does
+  std::string allowed;  ///< what may stand there; empty when `problem` says it
+  std::string nearest;  ///< the valid key or word nearest to what was found; empty when none is near
 
   /// `planning.headigns: unknown key; did you mean headings?`, without the place.
   [[nodiscard]] std::string text() const;
@@ -44,9 +44,9 @@ struct Node {
     broken,  ///< already reported (an alias, say): readers pass over it
   };
   Kind kind{Kind::empty};
-  Place place;               ///< first character; of an empty value, the key it belongs to
+  Place place;  ///< first character; of an empty value, the key it belongs to
   std::string text;
-  bool quoted{};             ///< in quotes or as a block: a text whatever it looks like
+  bool quoted{};  ///< in quotes or as a block: a text whatever it looks like
   std::vector<Node> items;
   std::vector<Member> members;
 
@@ -70,10 +70,10 @@ struct Document {
   std::vector<ConfigError> errors;
 };
 
-inline constexpr std::size_t kLargestFile = 1U << 20;   ///< bytes
-inline constexpr std::size_t kMostValues = 1U << 16;    ///< of one document
+inline constexpr std::size_t kLargestFile = 1U << 20;  ///< bytes
+inline constexpr std::size_t kMostValues = 1U << 16;   ///< of one document
 inline constexpr std::size_t kDeepestNesting = 16;
-inline constexpr std::size_t kMostErrors = 100;         ///< of one file; then one more says that there are more
+inline constexpr std::size_t kMostErrors = 100;  ///< of one file; then one more says that there are more
 
 /// Reads one YAML document more strictly than YAML: duplicate keys, anchors, aliases, tags, merge keys, keys that are
 /// no plain words, tabs, control characters, text that is not UTF-8, a second document, nesting beyond

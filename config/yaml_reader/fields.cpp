@@ -16,7 +16,7 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 std::string number_words(double value) {
   std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::fixed).ptr;
   return {buffer.data(), end};
 }
 
@@ -90,7 +90,8 @@ bool matches_name(std::string_view text) {
 }  // namespace
 
 const Pattern kAnyText{"^[\\s\\S]{1,4096}$", "a text of 1 to 4096 bytes", matches_any_text};
-const Pattern kName{"^[a-z0-9][a-z0-9_-]{0,31}$", "1 to 32 of a–z, 0–9, _ and -, the first a letter or digit", matches_name};
+const Pattern kName{"^[a-z0-9][a-z0-9_-]{0,31}$", "1 to 32 of a–z, 0–9, _ and -, the first a letter or digit",
+                    matches_name};
 
 std::string Range::text() const {
   const bool lowest = std::isinf(low), highest = std::isinf(high);
@@ -125,18 +126,23 @@ void Reading::complain(const std::string& path, std::string problem, std::string
 }
 
 void At::complain(std::string problem, std::string found_text, std::string allowed, std::string nearest) const {
-  reading.problems.add(node.place, path, std::move(problem), std::move(found_text), std::move(allowed), std::move(nearest));
+  reading.problems.add(node.place, path, std::move(problem), std::move(found_text), std::move(allowed),
+                       std::move(nearest));
 }
 
 At At::item(std::size_t i) const { return At{node.items[i], &node, path + "[" + std::to_string(i) + "]", reading}; }
 
 std::string At::found() const {
   switch (node.kind) {
-    case Node::Kind::empty: return "nothing";
-    case Node::Kind::list: return "a list";
-    case Node::Kind::map: return "a map of keys";
+    case Node::Kind::empty:
+      return "nothing";
+    case Node::Kind::list:
+      return "a list";
+    case Node::Kind::map:
+      return "a map of keys";
     case Node::Kind::scalar:
-    case Node::Kind::broken: break;
+    case Node::Kind::broken:
+      break;
   }
   return node.quoted ? "\"" + shown(node.text) + "\"" : shown(node.text);
 }
@@ -174,7 +180,8 @@ std::optional<double> read_number(const At& at, const Range& range) {
   } else if (is_not_finite(text)) {
     at.complain("not a finite number", at.found(), allowed);
   } else if (has_leading_zero(text)) {
-    at.complain("a number with a leading zero, which YAML may read as octal", at.found(), allowed + ", without the zero");
+    at.complain("a number with a leading zero, which YAML may read as octal", at.found(),
+                allowed + ", without the zero");
   } else if (!is_json_number(text)) {
     at.complain("not a number", at.found(), allowed);
   } else if (const auto value = number_from(text); !value) {
@@ -223,7 +230,8 @@ std::optional<std::string> read_text(const At& at, const Pattern& pattern) {
   return std::nullopt;
 }
 
-std::optional<std::size_t> read_word(const At& at, const std::vector<std::string>& words, const std::vector<std::string>& later) {
+std::optional<std::size_t> read_word(const At& at, const std::vector<std::string>& words,
+                                     const std::vector<std::string>& later) {
   if (at.node.is(Node::Kind::broken)) return std::nullopt;
   const auto& text = at.node.text;
   if (at.node.is(Node::Kind::scalar)) {
@@ -251,7 +259,8 @@ namespace {
 
 /// The value as a plain number, without a word about it when it is none.
 std::optional<double> quietly(const Node* node) {
-  if (node == nullptr || !node->is(Node::Kind::scalar) || node->quoted || !is_json_number(node->text)) return std::nullopt;
+  if (node == nullptr || !node->is(Node::Kind::scalar) || node->quoted || !is_json_number(node->text))
+    return std::nullopt;
   return number_from(node->text);
 }
 
@@ -261,7 +270,8 @@ std::optional<double> read_latitude(const At& at) {
   Range range;
   range.low = -90;
   range.high = 90;
-  const auto value = quietly(&at.node), longitude = quietly(at.around == nullptr ? nullptr : at.around->find("lon_deg"));
+  const auto value = quietly(&at.node),
+             longitude = quietly(at.around == nullptr ? nullptr : at.around->find("lon_deg"));
   if (value && longitude && !range.contains(*value) && std::abs(*value) <= 360 && std::abs(*longitude) <= 90) {
     at.complain("latitude out of range; latitude and longitude swapped?", at.found(), range_words(at.path, range));
     return std::nullopt;
@@ -298,19 +308,39 @@ bool expect_list(const At& at, int at_least, int at_most) {
 
 bool expect_map(const At& at) {
   if (at.node.is(Node::Kind::map)) return true;
-  if (!at.node.is(Node::Kind::broken)) at.complain("not a map of keys", at.found(), "KEY: VALUE lines, or {KEY: VALUE, …}");
+  if (!at.node.is(Node::Kind::broken))
+    at.complain("not a map of keys", at.found(), "KEY: VALUE lines, or {KEY: VALUE, …}");
   return false;
 }
+
+namespace {
+
+/// The key that was probably meant: nearest by edits, or the only one that adds to the word (`lat` for `lat_deg`).
+std::string nearest_key(const std::string& word, const std::vector<std::string>& names) {
+  if (word.empty() || word.size() > 64) return {};
+  if (auto nearest = nearest_word(word, names)) return *nearest;
+  std::string longer;
+  for (const auto& name : names) {
+    if (name.rfind(word + "_", 0) != 0) continue;
+    if (!longer.empty()) return {};
+    longer = name;
+  }
+  return longer;
+}
+
+}  // namespace
 
 void Keys::read(const At& at, void* target) const {
   std::vector<std::string> names;
   for (const auto& entry : entries_) names.push_back(entry.spec.key);
   const auto prefix = at.path.empty() ? "" : at.path + ".";
   for (const auto& member : at.node.members) {
-    const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.spec.key == member.key; });
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.spec.key == member.key; });
     if (entry == entries_.end()) {
-      const auto nearest = member.key.size() <= 64 ? nearest_word(member.key, names).value_or("") : "";
-      at.reading.problems.add(member.place, prefix + shown(member.key), "unknown key", {}, nearest.empty() ? joined(names) : "", nearest);
+      const auto nearest = nearest_key(member.key, names);
+      at.reading.problems.add(member.place, prefix + shown(member.key), "unknown key", {},
+                              nearest.empty() ? joined(names) : "", nearest);
       continue;
     }
     const auto path = prefix + member.key;
@@ -328,7 +358,8 @@ void Keys::read(const At& at, void* target) const {
 }
 
 void Keys::print(const void* target, const std::string& path, Effective& out) const {
-  for (const auto& entry : entries_) entry.print(target, path.empty() ? entry.spec.key : path + "." + entry.spec.key, out);
+  for (const auto& entry : entries_)
+    entry.print(target, path.empty() ? entry.spec.key : path + "." + entry.spec.key, out);
 }
 
 std::vector<KeySpec> Keys::specs() const {
@@ -338,11 +369,13 @@ std::vector<KeySpec> Keys::specs() const {
 }
 
 std::string yaml_text(std::string_view text) {
-  const auto plain_first = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/'; };
+  const auto plain_first = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || c == '/';
+  };
   const auto plain = [&](char c) { return plain_first(c) || is_digit(c) || c == '.' || c == '-'; };
   const auto word = lower(text);
-  if (!text.empty() && plain_first(text.front()) && std::all_of(text.begin(), text.end(), plain) && !is_truth_word(text) &&
-      word != "null")
+  if (!text.empty() && plain_first(text.front()) && std::all_of(text.begin(), text.end(), plain) &&
+      !is_truth_word(text) && word != "null")
     return std::string{text};
   constexpr char kHex[] = "0123456789abcdef";
   std::string result = "\"";
@@ -367,7 +400,8 @@ std::string yaml_list(const std::vector<std::string>& texts) {
 std::string yaml_number(double si, double unit) {
   std::array<char, 32> buffer{};
   const auto text = [&](double value, int digits) {
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits).ptr;
+    const auto end =
+        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::general, digits).ptr;
     return std::string{buffer.data(), end};
   };
   for (const int digits : {6, 12, 15, 16, 17}) {
@@ -386,8 +420,9 @@ std::string Effective::indent() {
   return result;
 }
 
-void Effective::leaf(const std::string& path, const std::string& key, const std::string& yaml) {
-  std::string origin = "default";
+void Effective::leaf(const std::string& path, const std::string& key, const std::string& yaml,
+                     const std::string& absent) {
+  std::string origin = yaml.empty() && !absent.empty() ? "default: " + absent : "default";
   if (reading_ != nullptr)
     if (const auto place = reading_->places.find(path); place != reading_->places.end())
       origin = shown(reading_->problems.file()) + ":" + std::to_string(place->second.line);
@@ -414,7 +449,8 @@ std::string Effective::text() const {
   std::string result;
   for (const auto& line : lines_) {
     result += line.text;
-    if (!line.origin.empty()) result += std::string(line.text.size() < column ? column - line.text.size() : 0, ' ') + "  # " + line.origin;
+    if (!line.origin.empty())
+      result += std::string(line.text.size() < column ? column - line.text.size() : 0, ' ') + "  # " + line.origin;
     result += '\n';
   }
   return result;

@@ -37,8 +37,8 @@ struct Pattern {
   const char* words;
   bool (*matches)(std::string_view);
 };
-extern const Pattern kAnyText;    ///< 1 to 4096 bytes
-extern const Pattern kName;       ///< ^[a-z0-9][a-z0-9_-]{0,31}$ : gliders and missions, safe as a file name
+extern const Pattern kAnyText;  ///< 1 to 4096 bytes
+extern const Pattern kName;     ///< ^[a-z0-9][a-z0-9_-]{0,31}$ : gliders and missions, safe as a file name
 
 struct KeySpec;
 
@@ -46,22 +46,22 @@ struct KeySpec;
 struct Shape {
   enum class Kind { number, whole, flag, text, word, time, list, map, any_of };
   Kind kind{Kind::text};
-  Range range;                      ///< number, whole
-  std::vector<std::string> words;   ///< word
-  const Pattern* pattern{&kAnyText};  ///< text
-  std::vector<Shape> parts;         ///< list: the item; any_of: the alternatives
-  std::vector<KeySpec> keys;        ///< map
+  Range range;                                               ///< number, whole
+  std::vector<std::string> words;                            ///< word
+  const Pattern* pattern{&kAnyText};                         ///< text
+  std::vector<Shape> parts;                                  ///< list: the item; any_of: the alternatives
+  std::vector<KeySpec> keys;                                 ///< map
   int at_least{}, at_most{std::numeric_limits<int>::max()};  ///< list
 };
 
 /// One key as people and schemas see it.
 struct KeySpec {
   std::string key;
-  std::string meaning;               ///< one sentence, without a full stop
+  std::string meaning;  ///< one sentence, without a full stop
   Shape shape;
   bool required{};
-  std::string default_text;          ///< YAML of the default; empty: none
-  std::string absent;                ///< what holds when the key is left out and has no default; such a key may be empty
+  std::string default_text;  ///< YAML of the default; empty: none
+  std::string absent;        ///< what holds when the key is left out and has no default; such a key may be empty
 };
 
 /// The unit that the end of a key says: "m" for `radius_m`, "m/s", "°", …; empty when it says none.
@@ -99,7 +99,8 @@ std::optional<bool> read_flag(const At& at);
 /// A text; words that YAML or its older versions take for a number, a truth value or nothing need quotes.
 std::optional<std::string> read_text(const At& at, const Pattern& pattern);
 /// Index of one of the words. A word of `later` is known but not available in this version.
-std::optional<std::size_t> read_word(const At& at, const std::vector<std::string>& words, const std::vector<std::string>& later = {});
+std::optional<std::size_t> read_word(const At& at, const std::vector<std::string>& words,
+                                     const std::vector<std::string>& later = {});
 std::optional<Instant> read_time(const At& at);
 /// A latitude or longitude in degrees; names a swap when the neighbour key says so.
 std::optional<double> read_latitude(const At& at);
@@ -119,12 +120,15 @@ std::string yaml_number(double si, double unit = 1.0);
 class Effective {
  public:
   explicit Effective(const Reading* reading) : reading_{reading} {}
-  void leaf(const std::string& path, const std::string& key, const std::string& yaml);
+  /// `absent` says what holds when `yaml` is empty.
+  void leaf(const std::string& path, const std::string& key, const std::string& yaml, const std::string& absent = {});
   void open(const std::string& key);
   void open_item();
   void close() { --depth_; }
   /// True when the file sets the key of this path.
-  [[nodiscard]] bool is_set(const std::string& path) const { return reading_ != nullptr && reading_->places.count(path) > 0; }
+  [[nodiscard]] bool is_set(const std::string& path) const {
+    return reading_ != nullptr && reading_->places.count(path) > 0;
+  }
   [[nodiscard]] std::string text() const;
 
  private:
@@ -183,12 +187,13 @@ class Fields {
   /// A quantity, `unit` SI units to one of the key's.
   template <class Member>
   Fields& number(Key key, Member member, double unit, Range range) {
-    return put(key, number_shape(range), key.required ? "" : yaml_number(in_unit(T{}.*member), unit),
-               [member, unit, range](const At& at, T& target) {
-                 using V = std::decay_t<decltype(target.*member)>;
-                 if (const auto value = read_number(at, range)) target.*member = V{*value * unit};
-               },
-               [member, unit](const T& t) { return yaml_number(in_unit(t.*member), unit); });
+    return put(
+        key, number_shape(range), key.required ? "" : yaml_number(in_unit(T{}.*member), unit),
+        [member, unit, range](const At& at, T& target) {
+          using V = std::decay_t<decltype(target.*member)>;
+          if (const auto value = read_number(at, range)) target.*member = V{*value * unit};
+        },
+        [member, unit](const T& t) { return yaml_number(in_unit(t.*member), unit); });
   }
 
   /// An optional quantity: none when the key is left out or empty, or when it says `word` (if that is not empty).
@@ -196,16 +201,17 @@ class Fields {
   Fields& maybe_number(Key key, Member member, double unit, Range range, std::string word = {}) {
     Shape shape = number_shape(range);
     if (!word.empty()) shape = any_of({word_shape({word}), shape});
-    return put(key, shape, word,
-               [member, unit, range, word](const At& at, T& target) {
-                 using V = typename std::decay_t<decltype(target.*member)>::value_type;
-                 if (!word.empty() && at.node.is(Node::Kind::scalar) && !looks_like_number(at.node.text)) {
-                   if (read_word(at, {word, "a number"})) target.*member = std::nullopt;
-                 } else if (const auto value = read_number(at, range)) {
-                   target.*member = V{*value * unit};
-                 }
-               },
-               [member, unit, word](const T& t) { return t.*member ? yaml_number(in_unit(*(t.*member)), unit) : word; });
+    return put(
+        key, shape, word,
+        [member, unit, range, word](const At& at, T& target) {
+          using V = typename std::decay_t<decltype(target.*member)>::value_type;
+          if (!word.empty() && at.node.is(Node::Kind::scalar) && !looks_like_number(at.node.text)) {
+            if (read_word(at, {word, "a number"})) target.*member = std::nullopt;
+          } else if (const auto value = read_number(at, range)) {
+            target.*member = V{*value * unit};
+          }
+        },
+        [member, unit, word](const T& t) { return t.*member ? yaml_number(in_unit(*(t.*member)), unit) : word; });
   }
 
   template <class Member>
@@ -219,33 +225,36 @@ class Fields {
 
   template <class Member>
   Fields& whole(Key key, Member member, Range range) {
-    return put(key, whole_shape(range), key.required ? "" : yaml_number(in_unit(T{}.*member)),
-               [member, range](const At& at, T& target) {
-                 using V = std::decay_t<decltype(target.*member)>;
-                 if (const auto value = read_whole(at, range)) target.*member = static_cast<V>(*value);
-               },
-               [member](const T& t) { return yaml_number(in_unit(t.*member)); });
+    return put(
+        key, whole_shape(range), key.required ? "" : yaml_number(in_unit(T{}.*member)),
+        [member, range](const At& at, T& target) {
+          using V = std::decay_t<decltype(target.*member)>;
+          if (const auto value = read_whole(at, range)) target.*member = static_cast<V>(*value);
+        },
+        [member](const T& t) { return yaml_number(in_unit(t.*member)); });
   }
 
   template <class Member>
   Fields& maybe_whole(Key key, Member member, Range range) {
-    return put(key, whole_shape(range), "",
-               [member, range](const At& at, T& target) {
-                 using V = typename std::decay_t<decltype(target.*member)>::value_type;
-                 if (const auto value = read_whole(at, range)) target.*member = static_cast<V>(*value);
-               },
-               [member](const T& t) { return t.*member ? yaml_number(in_unit(*(t.*member))) : std::string{}; });
+    return put(
+        key, whole_shape(range), "",
+        [member, range](const At& at, T& target) {
+          using V = typename std::decay_t<decltype(target.*member)>::value_type;
+          if (const auto value = read_whole(at, range)) target.*member = static_cast<V>(*value);
+        },
+        [member](const T& t) { return t.*member ? yaml_number(in_unit(*(t.*member))) : std::string{}; });
   }
 
   template <class Member>
   Fields& flag(Key key, Member member) {
     Shape shape;
     shape.kind = Shape::Kind::flag;
-    return put(key, shape, T{}.*member ? "true" : "false",
-               [member](const At& at, T& target) {
-                 if (const auto value = read_flag(at)) target.*member = *value;
-               },
-               [member](const T& t) { return std::string{t.*member ? "true" : "false"}; });
+    return put(
+        key, shape, T{}.*member ? "true" : "false",
+        [member](const At& at, T& target) {
+          if (const auto value = read_flag(at)) target.*member = *value;
+        },
+        [member](const T& t) { return std::string{t.*member ? "true" : "false"}; });
   }
 
   /// A text; empty in the struct means that the key is left out.
@@ -254,11 +263,12 @@ class Fields {
     Shape shape;
     shape.pattern = &pattern;
     const std::string standard = T{}.*member;
-    return put(key, shape, standard.empty() ? "" : yaml_text(standard),
-               [member, &pattern](const At& at, T& target) {
-                 if (auto value = read_text(at, pattern)) target.*member = std::move(*value);
-               },
-               [member](const T& t) { return (t.*member).empty() ? std::string{} : yaml_text(t.*member); });
+    return put(
+        key, shape, standard.empty() ? "" : yaml_text(standard),
+        [member, &pattern](const At& at, T& target) {
+          if (auto value = read_text(at, pattern)) target.*member = std::move(*value);
+        },
+        [member](const T& t) { return (t.*member).empty() ? std::string{} : yaml_text(t.*member); });
   }
 
   template <class Member>
@@ -267,21 +277,23 @@ class Fields {
     shape.kind = Shape::Kind::list;
     shape.at_least = at_least;
     shape.parts.push_back(Shape{});
-    return put(key, shape, key.required || at_least > 0 ? "" : "[]",
-               [member, at_least](const At& at, T& target) {
-                 if (!expect_list(at, at_least, std::numeric_limits<int>::max())) return;
-                 (target.*member).clear();
-                 for (std::size_t i = 0; i < at.node.items.size(); ++i)
-                   if (auto value = read_text(at.item(i), kAnyText)) (target.*member).push_back(std::move(*value));
-               },
-               [member, at_least](const T& t) {
-                 return (t.*member).empty() && at_least > 0 ? std::string{} : yaml_list(t.*member);
-               });
+    return put(
+        key, shape, key.required || at_least > 0 ? "" : "[]",
+        [member, at_least](const At& at, T& target) {
+          if (!expect_list(at, at_least, std::numeric_limits<int>::max())) return;
+          (target.*member).clear();
+          for (std::size_t i = 0; i < at.node.items.size(); ++i)
+            if (auto value = read_text(at.item(i), kAnyText)) (target.*member).push_back(std::move(*value));
+        },
+        [member, at_least](const T& t) {
+          return (t.*member).empty() && at_least > 0 ? std::string{} : yaml_list(t.*member);
+        });
   }
 
   /// One of several words, each with the value that it stands for.
   template <class Member, class V>
-  Fields& word(Key key, Member member, std::vector<std::pair<std::string, V>> table, std::vector<std::string> later = {}) {
+  Fields& word(Key key, Member member, std::vector<std::pair<std::string, V>> table,
+               std::vector<std::string> later = {}) {
     std::vector<std::string> words;
     for (const auto& row : table) words.push_back(row.first);
     const auto print = [member, table](const T& t) {
@@ -289,39 +301,44 @@ class Fields {
         if (t.*member == row.second) return row.first;
       return std::string{};
     };
-    return put(key, word_shape(words), key.required ? "" : print(T{}),
-               [member, table, words, later](const At& at, T& target) {
-                 if (const auto i = read_word(at, words, later)) target.*member = table[*i].second;
-               },
-               print);
+    return put(
+        key, word_shape(words), key.required ? "" : print(T{}),
+        [member, table, words, later](const At& at, T& target) {
+          if (const auto i = read_word(at, words, later)) target.*member = table[*i].second;
+        },
+        print);
   }
 
   /// A key that says only what the file is: `schema: glidehelm/mission/v1`.
   Fields& constant(Key key, const std::string& value) {
-    return put(key, word_shape({value}), "", [value](const At& at, T&) { (void)read_word(at, {value}); },
-               [value](const T&) { return value; });
+    return put(
+        key, word_shape({value}), "", [value](const At& at, T&) { (void)read_word(at, {value}); },
+        [value](const T&) { return value; });
   }
 
   template <class Member>
   Fields& time(Key key, Member member) {
     Shape shape;
     shape.kind = Shape::Kind::time;
-    return put(key, shape, "",
-               [member](const At& at, T& target) {
-                 if (const auto value = read_time(at)) target.*member = *value;
-               },
-               [member](const T& t) { return t.*member ? time_text(*(t.*member)) : std::string{}; });
+    return put(
+        key, shape, "",
+        [member](const At& at, T& target) {
+          if (const auto value = read_time(at)) target.*member = *value;
+        },
+        [member](const T& t) { return t.*member ? time_text(*(t.*member)) : std::string{}; });
   }
 
   /// A map whose keys fill the same struct.
   Fields& section(const Key& key, const Fields<T>& inner) {
-    return nest<T>(key, inner, [](const T& t) { return &t; }, [](T& t) { return &t; });
+    return nest<T>(
+        key, inner, [](const T& t) { return &t; }, [](T& t) { return &t; });
   }
 
   /// A map that fills a member.
   template <class U, class Owner>
   Fields& part(const Key& key, U Owner::*member, const Fields<U>& inner) {
-    return nest<U>(key, inner, [member](const T& t) { return &(t.*member); }, [member](T& t) { return &(t.*member); });
+    return nest<U>(
+        key, inner, [member](const T& t) { return &(t.*member); }, [member](T& t) { return &(t.*member); });
   }
 
   /// A list of maps.
@@ -331,26 +348,27 @@ class Fields {
     shape.kind = Shape::Kind::list;
     shape.at_least = at_least;
     shape.parts.push_back(inner.shape());
-    return custom(key, shape, "",
-                  [member, inner, at_least](const At& at, T& target) {
-                    if (!expect_list(at, at_least, std::numeric_limits<int>::max())) return;
-                    (target.*member).clear();
-                    for (std::size_t i = 0; i < at.node.items.size(); ++i) {
-                      const auto item = at.item(i);
-                      U value;
-                      if (expect_map(item)) inner.read(item, value);
-                      (target.*member).push_back(std::move(value));
-                    }
-                  },
-                  [member, inner, name = key.name](const T& t, const std::string& path, Effective& out) {
-                    out.open(name);
-                    for (std::size_t i = 0; i < (t.*member).size(); ++i) {
-                      out.open_item();
-                      inner.print((t.*member)[i], path + "[" + std::to_string(i) + "]", out);
-                      out.close();
-                    }
-                    out.close();
-                  });
+    return custom(
+        key, shape, "",
+        [member, inner, at_least](const At& at, T& target) {
+          if (!expect_list(at, at_least, std::numeric_limits<int>::max())) return;
+          (target.*member).clear();
+          for (std::size_t i = 0; i < at.node.items.size(); ++i) {
+            const auto item = at.item(i);
+            U value;
+            if (expect_map(item)) inner.read(item, value);
+            (target.*member).push_back(std::move(value));
+          }
+        },
+        [member, inner, name = key.name](const T& t, const std::string& path, Effective& out) {
+          out.open(name);
+          for (std::size_t i = 0; i < (t.*member).size(); ++i) {
+            out.open_item();
+            inner.print((t.*member)[i], path + "[" + std::to_string(i) + "]", out);
+            out.close();
+          }
+          out.close();
+        });
   }
 
   /// Anything else: the reader and the printer are given.
@@ -364,7 +382,9 @@ class Fields {
     spec.default_text = std::move(default_text);
     spec.absent = key.absent;
     keys_->add({std::move(spec), [read](const At& at, void* target) { read(at, *static_cast<T*>(target)); },
-                [print](const void* t, const std::string& path, Effective& out) { print(*static_cast<const T*>(t), path, out); }});
+                [print](const void* t, const std::string& path, Effective& out) {
+                  print(*static_cast<const T*>(t), path, out);
+                }});
     return *this;
   }
 
@@ -410,30 +430,35 @@ class Fields {
     Range range;
     range.low = -limit;
     range.high = limit;
-    return put(key, number_shape(range), "",
-               [member, reader](const At& at, T& target) {
-                 if (const auto value = reader(at)) target.*member = *value;
-               },
-               [member](const T& t) { return t.*member ? yaml_number(*(t.*member)) : std::string{}; });
+    return put(
+        key, number_shape(range), "",
+        [member, reader](const At& at, T& target) {
+          if (const auto value = reader(at)) target.*member = *value;
+        },
+        [member](const T& t) { return t.*member ? yaml_number(*(t.*member)) : std::string{}; });
   }
 
   Fields& put(const Key& key, Shape shape, std::string default_text, std::function<void(const At&, T&)> read,
               std::function<std::string(const T&)> print) {
     return custom(key, std::move(shape), std::move(default_text), std::move(read),
-                  [print, name = key.name](const T& t, const std::string& path, Effective& out) { out.leaf(path, name, print(t)); });
+                  [print, name = key.name, absent = key.absent](const T& t, const std::string& path, Effective& out) {
+                    out.leaf(path, name, print(t), absent);
+                  });
   }
 
   template <class U>
-  Fields& nest(const Key& key, const Fields<U>& inner, std::function<const U*(const T&)> get, std::function<U*(T&)> change) {
-    return custom(key, inner.shape(), "",
-                  [inner, change](const At& at, T& target) {
-                    if (expect_map(at)) inner.read(at, *change(target));
-                  },
-                  [inner, get, name = key.name](const T& t, const std::string& path, Effective& out) {
-                    out.open(name);
-                    inner.print(*get(t), path, out);
-                    out.close();
-                  });
+  Fields& nest(const Key& key, const Fields<U>& inner, std::function<const U*(const T&)> get,
+               std::function<U*(T&)> change) {
+    return custom(
+        key, inner.shape(), "",
+        [inner, change](const At& at, T& target) {
+          if (expect_map(at)) inner.read(at, *change(target));
+        },
+        [inner, get, name = key.name](const T& t, const std::string& path, Effective& out) {
+          out.open(name);
+          inner.print(*get(t), path, out);
+          out.close();
+        });
   }
 
   std::shared_ptr<Keys> keys_ = std::make_shared<Keys>();

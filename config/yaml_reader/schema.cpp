@@ -20,7 +20,8 @@ class Object {
  public:
   explicit Object(int depth) : depth_{depth} {}
   void add(std::string_view key, const std::string& json) {
-    text_ += (text_.empty() ? "" : ",") + ("\n" + std::string(static_cast<std::size_t>(depth_ + 1) * 2, ' ')) + quoted(key) + ": " + json;
+    text_ += (text_.empty() ? "" : ",") + ("\n" + std::string(static_cast<std::size_t>(depth_ + 1) * 2, ' ')) +
+             quoted(key) + ": " + json;
   }
   [[nodiscard]] std::string text() const {
     return text_.empty() ? "{}" : "{" + text_ + "\n" + std::string(static_cast<std::size_t>(depth_) * 2, ' ') + "}";
@@ -38,7 +39,8 @@ std::string strings(const std::vector<std::string>& words) {
 }
 
 std::string json_of_default(const std::string& yaml) {
-  const bool literal = yaml == "true" || yaml == "false" || yaml == "[]" || yaml.front() == '"' || looks_like_number(yaml);
+  const bool literal =
+      yaml == "true" || yaml == "false" || yaml == "[]" || yaml.front() == '"' || looks_like_number(yaml);
   return literal ? yaml : quoted(yaml);
 }
 
@@ -84,7 +86,9 @@ void describe(const Shape& shape, bool may_be_empty, int depth, Object& out) {
       type("integer");
       describe_range(shape.range, out);
       break;
-    case Shape::Kind::flag: type("boolean"); break;
+    case Shape::Kind::flag:
+      type("boolean");
+      break;
     case Shape::Kind::text:
       type("string");
       if (shape.pattern == &kAnyText) {
@@ -94,7 +98,9 @@ void describe(const Shape& shape, bool may_be_empty, int depth, Object& out) {
         out.add("pattern", quoted(shape.pattern->regex));
       }
       break;
-    case Shape::Kind::word: out.add("enum", strings(shape.words)); break;
+    case Shape::Kind::word:
+      out.add("enum", strings(shape.words));
+      break;
     case Shape::Kind::time:
       type("string");
       out.add("pattern", quoted("^[0-9]{4}-[0-9]{2}-[0-9]{2}([T ][0-9]{2}:[0-9]{2}(:[0-9]{2}(\\.[0-9]+)?)?Z?)?$"));
@@ -111,7 +117,8 @@ void describe(const Shape& shape, bool may_be_empty, int depth, Object& out) {
       break;
     case Shape::Kind::any_of: {
       std::string alternatives;
-      for (const auto& part : shape.parts) alternatives += (alternatives.empty() ? "" : ", ") + object_of(part, depth + 1);
+      for (const auto& part : shape.parts)
+        alternatives += (alternatives.empty() ? "" : ", ") + object_of(part, depth + 1);
       if (may_be_empty) alternatives += ", {\"type\": \"null\"}";
       out.add("anyOf", "[" + alternatives + "]");
       break;
@@ -121,19 +128,31 @@ void describe(const Shape& shape, bool may_be_empty, int depth, Object& out) {
 
 std::string allowed_words(const Shape& shape, const std::string& key) {
   switch (shape.kind) {
-    case Shape::Kind::number: return shape.range.text().empty() ? "a number" : shape.range.text();
-    case Shape::Kind::whole: return "whole, " + shape.range.text();
-    case Shape::Kind::flag: return "`true`, `false`";
-    case Shape::Kind::text: return shape.pattern->words;
-    case Shape::Kind::time: return "UTC, as `2026-11-25T10:20:30Z`";
-    case Shape::Kind::map: return "keys below";
+    case Shape::Kind::number:
+      return shape.range.text().empty() ? "a number" : shape.range.text();
+    case Shape::Kind::whole:
+      return "whole, " + shape.range.text();
+    case Shape::Kind::flag:
+      return "`true`, `false`";
+    case Shape::Kind::text:
+      return shape.pattern->words;
+    case Shape::Kind::time:
+      return "UTC, as `2026-11-25T10:20:30Z`";
+    case Shape::Kind::map:
+      return "keys below";
     case Shape::Kind::list: {
-      const auto item = shape.parts.front().kind == Shape::Kind::map ? std::string{"maps with the keys below"} : allowed_words(shape.parts.front(), key);
+      const auto item = shape.parts.front().kind == Shape::Kind::map ? std::string{"maps with the keys below"}
+                                                                     : allowed_words(shape.parts.front(), key);
       const bool fixed = shape.at_least > 0 && shape.at_least == shape.at_most;
-      return std::string{"list of "} + (fixed ? std::to_string(shape.at_least) + ": " : shape.at_least > 0 ? "at least " + std::to_string(shape.at_least) + ": " : "") + item;
+      return std::string{"list of "} +
+             (fixed                ? std::to_string(shape.at_least) + ": "
+              : shape.at_least > 0 ? "at least " + std::to_string(shape.at_least) + ": "
+                                   : "") +
+             item;
     }
     case Shape::Kind::word:
-    case Shape::Kind::any_of: break;
+    case Shape::Kind::any_of:
+      break;
   }
   std::string result;
   for (const auto& word : shape.words) result += (result.empty() ? "`" : ", `") + word + "`";
@@ -149,14 +168,24 @@ const Shape* map_within(const Shape& shape) {
   return nullptr;
 }
 
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) result += c == '|' ? std::string{"\\|"} : std::string{c};
+  return result;
+}
+
 void add_rows(const Shape& map, const std::string& prefix, std::string& out) {
   for (const auto& spec : map.keys) {
     const auto path = prefix + spec.key;
-    std::string standard = spec.required ? "**required**" : spec.default_text.empty() ? spec.absent : "`" + spec.default_text + "`";
+    std::string standard = spec.required               ? "**required**"
+                           : spec.default_text.empty() ? spec.absent
+                                                       : "`" + spec.default_text + "`";
     if (standard.empty()) standard = "–";
     const auto unit = unit_of(spec.key);
-    out += "| `" + path + "` | " + spec.meaning + " | " + (unit.empty() ? "–" : unit) + " | " + allowed_words(spec.shape, spec.key) + " | " + standard + " |\n";
-    if (const auto* inner = map_within(spec.shape)) add_rows(*inner, path + (spec.shape.kind == Shape::Kind::list ? "[]." : "."), out);
+    out += "| `" + path + "` | " + escaped(spec.meaning) + " | " + (unit.empty() ? "–" : unit) + " | " +
+           allowed_words(spec.shape, spec.key) + " | " + standard + " |\n";
+    if (const auto* inner = map_within(spec.shape))
+      add_rows(*inner, path + (spec.shape.kind == Shape::Kind::list ? "[]." : "."), out);
   }
 }
 

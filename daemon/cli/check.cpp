@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "config/areas.hpp"
 #include "config/daemon.hpp"
 #include "config/load.hpp"
 #include "config/mission.hpp"
@@ -21,7 +22,7 @@ struct Report {
   std::string file;
   std::string kind{"unknown"};
   std::vector<ConfigError> problems;
-  std::string summary;    ///< of a right file
+  std::string summary;  ///< of a right file
   std::string effective;
 };
 
@@ -75,10 +76,12 @@ class Checker {
     const auto document = config::read_yaml(text, file);
     const std::vector<std::string> allowed{config::kMissionSchema, config::kDaemonSchema};
     const auto* schema = document.readable ? document.root.find("schema") : nullptr;
-    if (schema != nullptr && std::find(allowed.begin(), allowed.end(), schema->text) != allowed.end()) return schema->text;
+    if (schema != nullptr && std::find(allowed.begin(), allowed.end(), schema->text) != allowed.end())
+      return schema->text;
     report.problems = document.errors;
     if (!document.readable) return {};
-    auto error = at_start(file, "schema", schema == nullptr ? "missing; a file says with it what it is" : "not one of the words");
+    auto error = at_start(file, "schema",
+                          schema == nullptr ? "missing; a file says with it what it is" : "not one of the words");
     error.line = schema == nullptr ? document.root.place.line : schema->place.line;
     error.column = schema == nullptr ? document.root.place.column : schema->place.column;
     error.allowed = allowed[0] + ", " + allowed[1];
@@ -129,7 +132,8 @@ class Checker {
     if (all) return;
     for (const auto& error : all.error())
       for (auto& report : reports)
-        if (report.file == error.file && std::find(report.problems.begin(), report.problems.end(), error) == report.problems.end())
+        if (report.file == error.file &&
+            std::find(report.problems.begin(), report.problems.end(), error) == report.problems.end())
           report.problems.push_back(error);
   }
 
@@ -152,9 +156,12 @@ void print_json(const std::vector<Report>& reports, bool effective, std::ostream
   for (const auto& report : reports) {
     auto problems = nlohmann::ordered_json::array();
     for (const auto& problem : report.problems)
-      problems.push_back({{"line", problem.line}, {"column", problem.column}, {"key", problem.key}, {"message", problem.text()}});
-    nlohmann::ordered_json file{
-        {"file", report.file}, {"kind", report.kind}, {"valid", report.problems.empty()}, {"problems", std::move(problems)}};
+      problems.push_back(
+          {{"line", problem.line}, {"column", problem.column}, {"key", problem.key}, {"message", problem.text()}});
+    nlohmann::ordered_json file{{"file", report.file},
+                                {"kind", report.kind},
+                                {"valid", report.problems.empty()},
+                                {"problems", std::move(problems)}};
     if (effective && report.problems.empty()) file["effective"] = report.effective;
     files.push_back(std::move(file));
   }
@@ -176,7 +183,8 @@ int run_check(const CheckOptions& options, world::World& world, std::ostream& ou
     print_json(checker.reports, options.effective, out);
   else
     print_text(checker.reports, options.effective, out, err);
-  const bool right = std::all_of(checker.reports.begin(), checker.reports.end(), [](const Report& r) { return r.problems.empty(); });
+  const bool right =
+      std::all_of(checker.reports.begin(), checker.reports.end(), [](const Report& r) { return r.problems.empty(); });
   return right ? 0 : 1;
 }
 

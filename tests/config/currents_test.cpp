@@ -1,0 +1,152 @@
+#include "config/currents.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "config/mission.hpp"
+#include "core/base/utc.hpp"
+#include "tests/support/config.hpp"
+
+using namespace glidehelm;
+using test::no_files;
+using Lines = std::vector<std::string>;
+
+namespace {
+
+/// A mission whose line 5 and following are `currents`.
+std::string with(const std::string& currents) {
+  return "schema: glidehelm/mission/v1\nname: a1\nglider: b1\ngoal: {lat_deg: 29, lon_deg: -15}\n" + currents;
+}
+Lines errors(const std::string& currents) {
+  return test::errors_of(config::read_mission(with(currents), "m.yaml", no_files()));
+}
+mission::Currents read(const std::string& currents) {
+  const auto file = config::read_mission_file(with(currents), "m.yaml", no_files());
+  if (!file)
+    for (const auto& error : file.error()) UNSCOPED_INFO(error.message());
+  REQUIRE(file);
+  // Whatever the test looks at, the printed form means the same.
+  const auto again = config::read_mission(file->effective, "m.yaml", no_files());
+  CAPTURE(file->effective);
+  REQUIRE(again);
+  CHECK(*again == file->mission);
+  return file->mission.currents;
+}
+const std::string kScales = "origin: {lat_deg: 28, lon_deg: -16}, length_scale_m: 50000, speed_scale_m_per_s: 0.5";
+std::string analytic(const std::string& rest) { return "currents: {analytic: {" + kScales + ", " + rest + "}}\n"; }
+
+}  // namespace
+
+TEST_CASE("an analytic field has its scales and the parameters of its kind, those left out with their defaults") {
+  const auto c = read(analytic("kind: jet, t0: 2026-11-25T00:00Z, south: true, params: {epsilon: 0.1}"));
+  REQUIRE(c.files.empty());
+  REQUIRE(c.analytic.size() == 1);
+  const auto& jet = c.analytic[0];
+  CHECK(jet.kind == "jet");
+  CHECK(jet.origin == geo_point(28, -16));
+  CHECK(jet.length_scale == Metres{50000});
+  CHECK(jet.speed_scale == MetresPerSecond{0.5});
+  CHECK_FALSE(jet.time_scale);
+  CHECK(jet.t0 == utc_from_text("2026-11-25"));
+  CHECK(jet.south);
+  CHECK(jet.params == std::vector<std::pair<std::string, double>>{
+                          {"B0", 1.2}, {"epsilon", 0.1}, {"omega", 0.4}, {"theta", kPi / 2}, {"k", 0.84}, {"c", 0.12}});
+}
+
+TEST_CASE("every analytic kind is read with its parameters") {
+  using Params = std::vector<std::pair<std::string, double>>;
+  struct Row {
+    const char* kind;
+    Params params;
+  };
+  const auto row = GENERATE(values<Row>({
+      {"kind: constant, params: {u: 1, v: -0.5}", {{"u", 1}, {"v", -0.5}}},
+      {"kind: source", {}},
+      {"kind: sink, params: {}", {}},
+      {"kind: solid-body", {{"omega", 1}}},
+      {"kind: solid-body, params: {omega: -2}", {{"omega", -2}}},
+      {"kind: shear, params: {rate: 0.3}", {{"rate", 0.3}}},
+      {"kind: double-eddy, time_scale_s: 864000", {{"A", 0.1}, {"epsilon", 0.25}, {"omega", 2 * kPi}}},
+      {"kind: stuart", {}},
+      {"kind: tiled", {{"dynamic", 0}}},
+      {"kind: tiled, params: {dynamic: true}", {{"dynamic", 1}}},
+  }));
+  CAPTURE(row.kind);
+  const auto c = read(analytic(row.kind));
+  REQUIRE(c.analytic.size() == 1);
+  CHECK(c.analytic[0].params == row.params);
+}
+
+TEST_CASE("gaussians are rows of eight numbers with a covariance that is one") {
+  const auto c =
+      read(analytic("kind: gaussians, params: {list: [[1, 0, 0, 2, 0.5, 1, 0.1, 0], [0.5, 3, -1, 1, 0, 1, 0, -0.2]]}"));
+  CHECK(c.analytic[0].gaussians ==
+        std::vector<std::vector<double>>{{1, 0, 0, 2, 0.5, 1, 0.1, 0}, {0.5, 3, -1, 1, 0, 1, 0, -0.2}});
+  CHECK(errors("currents:\n  analytic:\n    kind: gaussians\n    " +
+               std::string{"origin: {lat_deg: 28, lon_deg: -16}\n    length_scale_m: 1\n    speed_scale_m_per_s: 1\n"} +
+               "    params:\n      list:\n        - [1, 0, 0, 1, 2, 1, 0, 0]\n        - [1, 2]\n") ==
+        Lines{"13:11 currents.analytic.params.list[0]: sxx, sxy, syy are no covariance; allowed: sxx > 0, syy > 0, "
+              "sxx·syy > sxy²",
+              "14:11 currents.analytic.params.list[1]: a list of another length; found 2; allowed: a list of 8"});
+  CHECK(errors(analytic("kind: gaussians")) ==
+        Lines{"5:22 currents.analytic.params.list: missing; the kind gaussians requires it"});
+}
+
+TEST_CASE("a list under currents adds fields, which share one way of reading files") {
+  const auto c =
+      read("currents:\n  - {files: [a.nc], outside_time: forbid}\n  - analytic: {" + kScales +
+           ", kind: constant, params: {u: 0, v: 0.1}}\n" + "  - analytic: {" + kScales + ", kind: stuart}\n");
+  CHECK(c.files == std::vector<std::string>{"a.nc"});
+  CHECK(c.outside_time == mission::OutsideTime::forbid);
+  REQUIRE(c.analytic.size() == 2);
+  CHECK(c.analytic[1].kind == "stuart");
+  CHECK(read("currents: [{files: [a.nc]}]\n").files.size() == 1);
+}
+
+TEST_CASE("mistakes under currents are named with their place") {
+  struct Row {
+    std::string currents;
+    Lines errors;
+  };
+  const auto row = GENERATE(values<Row>({
+      {"currents: {}\n", {"5:11 currents: no field; allowed: files: [PATTERN, …] or analytic: {…}"}},
+      {"currents: {files: []}\n",
+       {"5:19 currents.files: a list of another length; found 0; allowed: a list of at least 1"}},
+      {"currents: {files: a.nc}\n", {"5:19 currents.files: not a list; found a.nc; allowed: a list of at least 1"}},
+      {"currents: a.nc\n",
+       {"5:11 currents: not a map of keys; found a.nc; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"}},
+      {"currents: []\n", {"5:11 currents: a list of another length; found 0; allowed: a list of 1 to 16"}},
+      {"currents: [{files: [a.nc]}, {files: [b.nc]}]\n",
+       {"5:29 currents[1]: a second set of files; allowed: all files in one list; the newest cycle wins where they "
+        "overlap"}},
+      {"currents: {files: [a.nc], outside_time: freeze}\n",
+       {"5:41 currents.outside_time: not one of the words; found freeze; allowed: hold, cycle, forbid"}},
+      {"currents: {files: [a.nc], interpolation: bilinear}\n",
+       {"5:42 currents.interpolation: not one of the words; found bilinear; allowed: nearest, linear, cubic, akima; "
+        "did you mean linear?"}},
+      {"currents: {analytic: {kind: eddy}}\n",
+       {"5:22 currents.analytic.origin: missing; the key is required",
+        "5:22 currents.analytic.length_scale_m: missing; the key is required",
+        "5:22 currents.analytic.speed_scale_m_per_s: missing; the key is required",
+        "5:29 currents.analytic.kind: not one of the words; found eddy; allowed: constant, source, sink, solid-body, "
+        "shear, double-eddy, "
+        "stuart, tiled, jet, gaussians"}},
+  }));
+  CAPTURE(row.currents);
+  CHECK(errors(row.currents) == row.errors);
+}
+
+TEST_CASE("a parameter of another kind, a missing one and two meanings at once are mistakes") {
+  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: shear,\n    params: {rate: 1, omega: 2}}\n") ==
+        Lines{"7:30 currents.analytic.params.omega: no parameter of the kind shear; allowed: rate"});
+  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: source,\n    params: {rate: 1}}\n") ==
+        Lines{"7:20 currents.analytic.params.rate: no parameter of the kind source; allowed: none"});
+  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: constant,\n    params: {u: 1, w: 1}}\n") ==
+        Lines{"7:13 currents.analytic.params.v: missing; the kind constant requires it",
+              "7:20 currents.analytic.params.w: unknown key; did you mean u?"});
+  CHECK(errors("currents: {files: [a.nc], analytic: {" + kScales + ", kind: stuart}}\n") ==
+        Lines{"5:11 currents: both files and analytic; allowed: a list of maps, one field each, to add fields"});
+  CHECK(
+      errors("currents:\n  - {files: [a.nc], outside_time: hold}\n  - {outside_time: cycle,\n     analytic: {" +
+             kScales + ", kind: stuart}}\n") ==
+      Lines{"7:20 currents[1].outside_time: the fields of a list share one outside_time; currents[0] says otherwise"});
+}

@@ -71,7 +71,7 @@ Fields<Draft> vehicle_fields() {
            &Draft::horizontal_speed, 1, above(0, 2));
   f.number({"glide_angle_deg", "angle of the path below the horizon"}, &Draft::glide_angle, kDegree, from_to(5, 60));
   f.number({"dive_depth_m", "lower turning depth of the yo"}, &Draft::dive_depth, 1, above(0, 1500));
-  f.number({"climb_to_m", "upper turning depth of the yo; above `dive_depth_m`"}, &Draft::climb_to, 1,
+  f.number({"climb_to_m", "upper turning depth of the yo; less than `dive_depth_m`"}, &Draft::climb_to, 1,
            from_to(0, 1500));
   f.whole({"current_correction",
            "`u_use_current_correction` of the glider: 0 steers without currents, 1 with the last measured one"},

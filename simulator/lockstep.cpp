@@ -31,7 +31,8 @@ std::optional<Idle> idle_from(std::string_view line) {
   return Idle{*tick, timer};
 }
 
-std::string run_line(Instant utc, std::int64_t tick_ms, const std::vector<std::pair<std::string, std::uint64_t>>& bytes) {
+std::string run_line(Instant utc, std::int64_t tick_ms,
+                     const std::vector<std::pair<std::string, std::uint64_t>>& bytes) {
   std::string line = "run " + std::to_string(utc.time_since_epoch().count()) + " " + std::to_string(tick_ms);
   for (const auto& [name, count] : bytes) line += " " + name + "=" + std::to_string(count);
   return line + "\n";
@@ -88,7 +89,8 @@ void ClockServer::hear(std::string_view bytes) {
   }
 }
 
-void ClockServer::run(Instant utc, std::int64_t tick_ms, const std::vector<std::pair<std::string, std::uint64_t>>& bytes) {
+void ClockServer::run(Instant utc, std::int64_t tick_ms,
+                      const std::vector<std::pair<std::string, std::uint64_t>>& bytes) {
   asked_ms_ = tick_ms;
   stream_->write(run_line(utc, tick_ms, bytes));
 }

@@ -26,7 +26,8 @@ struct Idle {
 std::optional<Idle> idle_from(std::string_view line);
 
 /// `run UTC_MS TICK_MS LINE=BYTES …` with its line end.
-std::string run_line(Instant utc, std::int64_t tick_ms, const std::vector<std::pair<std::string, std::uint64_t>>& bytes);
+std::string run_line(Instant utc, std::int64_t tick_ms,
+                     const std::vector<std::pair<std::string, std::uint64_t>>& bytes);
 
 /// The simulator's side of the lockstep clock (docs/lockstep.md): listens on a Unix socket, greets whoever connects,
 /// hands out time, and hears when the daemon is idle. One daemon at a time; a newer connection replaces the older, so

@@ -19,7 +19,8 @@ OceanTruth::~OceanTruth() = default;
 OceanTruth::OceanTruth(OceanTruth&&) noexcept = default;
 OceanTruth& OceanTruth::operator=(OceanTruth&&) noexcept = default;
 
-Expected<OceanTruth, TruthError> OceanTruth::make(const TruthPlan& plan, Instant start, bool with_coast, world::Files& files) {
+Expected<OceanTruth, TruthError> OceanTruth::make(const TruthPlan& plan, Instant start, bool with_coast,
+                                                  world::Files& files) {
   auto parts = std::make_unique<Parts>();
   if (!plan.grid.empty()) {
     auto mapping = files.map(plan.grid);

@@ -22,7 +22,8 @@ struct TruthError {
 class OceanTruth {
  public:
   /// `with_coast`: a coastline says what is land; otherwise the grid's own mask does.
-  static Expected<OceanTruth, TruthError> make(const TruthPlan& plan, Instant start, bool with_coast, world::Files& files);
+  static Expected<OceanTruth, TruthError> make(const TruthPlan& plan, Instant start, bool with_coast,
+                                               world::Files& files);
   ~OceanTruth();
   OceanTruth(OceanTruth&&) noexcept;
   OceanTruth& operator=(OceanTruth&&) noexcept;

@@ -13,15 +13,15 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr std::int64_t kFirstTick = 1000;  // any positive monotonic start will do
-constexpr milliseconds kLastBytes{300};  // for the last bytes before a link falls
+constexpr milliseconds kLastBytes{300};    // for the last bytes before a link falls
 constexpr int kInterrupt = 2, kTerminate = 15;
 
 milliseconds as_ms(double seconds) { return milliseconds{static_cast<std::int64_t>(std::ceil(seconds * 1e3))}; }
 
 }  // namespace
 
-Runner::Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std::vector<Port> ports, Instant start, Pace pace,
-               Told told)
+Runner::Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std::vector<Port> ports, Instant start,
+               Pace pace, Told told)
     : net_{net},
       wall_{wall},
       simulation_{simulation},
@@ -32,19 +32,21 @@ Runner::Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std:
       told_{std::move(told)},
       counted_from_(ports_.size(), 0),
       surfacings_told_(ports_.size(), 0),
-      clock_{net, ClockServer::Told{[this] { begin(); }, [this] { on_daemon_lost(); }, [this](const Idle& idle) { on_idle(idle); },
+      clock_{net, ClockServer::Told{[this] { begin(); }, [this] { on_daemon_lost(); },
+                                    [this](const Idle& idle) { on_idle(idle); },
                                     [this](const std::string& line) {
-                                      end(RunOutcome::no_daemon, "the daemon's clock connection said something else than idle: " + line);
+                                      end(RunOutcome::no_daemon,
+                                          "the daemon's clock connection said something else than idle: " + line);
                                     }}} {}
 
 Runner::~Runner() = default;
 
 RunOutcome Runner::run() {
   for (const auto& port : ports_) {
-    lines_.push_back(std::make_unique<DialogLine>(net_, wall_, port.address,
-                                                  DialogLine::Told{[this] { proceed(); }, [this, name = port.name](const std::string& text) {
-                                                                     say(name + ": " + text);
-                                                                   }}));
+    lines_.push_back(std::make_unique<DialogLine>(
+        net_, wall_, port.address,
+        DialogLine::Told{[this] { proceed(); },
+                         [this, name = port.name](const std::string& text) { say(name + ": " + text); }}));
     if (const auto started = lines_.back()->start(); !started) {
       say(started.error().message());
       return RunOutcome::failed;
@@ -84,8 +86,7 @@ void Runner::begin() {
   next_timer_ms_.reset();
   if (!started_) wall_start_ = wall_.tick();
   started_ = true;
-  state_ = State::waiting;
-  proceed();
+  tell(State::told_time);  // a daemon opens its lines only when it has a time
 }
 
 void Runner::on_daemon_lost() {
@@ -152,7 +153,8 @@ void Runner::proceed() {
 void Runner::tell(State state) {
   state_ = state;
   std::vector<std::pair<std::string, std::uint64_t>> bytes;
-  for (std::size_t i = 0; i < lines_.size(); ++i) bytes.emplace_back(ports_[i].name, lines_[i]->total() - counted_from_[i]);
+  for (std::size_t i = 0; i < lines_.size(); ++i)
+    bytes.emplace_back(ports_[i].name, lines_[i]->total() - counted_from_[i]);
   if (pace_.charge_computing || pace_.realtime)
     for (auto& port : ports_) port.folder->remember(now_);
   asked_at_ = wall_.tick();
@@ -168,7 +170,7 @@ void Runner::on_idle(const Idle& idle) {
     for (auto& port : ports_) port.folder->hide_news_until(now_ + as_ms(took));
   }
   const auto event = simulation_.next_event();
-  const bool happens = state_ == State::told_time && event && *event <= now_;
+  const bool happens = state_ == State::told_time && event && *event <= now_ && everybody_there();
   state_ = State::waiting;
   if (happens) {
     let_it_happen();
@@ -181,8 +183,10 @@ void Runner::on_idle(const Idle& idle) {
 
 void Runner::let_it_happen() {
   for (auto& output : simulation_.step()) {
-    if (output.event.kind == LineEvent::Kind::dropped) to_drop_.push_back(output.glider);
-    else lines_[output.glider]->write(std::move(output.event.bytes));
+    if (output.event.kind == LineEvent::Kind::dropped)
+      to_drop_.push_back(output.glider);
+    else
+      lines_[output.glider]->write(std::move(output.event.bytes));
   }
   for (std::size_t i = 0; i < ports_.size(); ++i) {
     for (const auto& all = simulation_.surfacings(i); surfacings_told_[i] < all.size(); ++surfacings_told_[i])

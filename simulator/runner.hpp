@@ -17,9 +17,9 @@ namespace glidehelm::simulator {
 
 /// How simulated time passes.
 struct Pace {
-  std::string clock;        ///< Unix socket of the lockstep clock; empty: the daemon has its own clock
+  std::string clock;               ///< Unix socket of the lockstep clock; empty: the daemon has its own clock
   std::optional<double> realtime;  ///< N: no faster than N-fold wall time; needed when `clock` is empty
-  bool charge_computing{};  ///< what the daemon's answer takes in wall time passes in simulated time too (× N)
+  bool charge_computing{};         ///< what the daemon's answer takes in wall time passes in simulated time too (× N)
   double daemon_wait_s{60};
 };
 
@@ -46,11 +46,12 @@ class Runner {
     std::function<void(const std::string&)> said;
   };
   struct Port {
-    std::string name;       ///< of the glider
+    std::string name;  ///< of the glider
     LineAddress address;
     DockFolder* folder{};
   };
-  Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std::vector<Port> ports, Instant start, Pace pace, Told told);
+  Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std::vector<Port> ports, Instant start, Pace pace,
+         Told told);
   ~Runner();
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;

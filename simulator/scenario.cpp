@@ -40,10 +40,12 @@ void check_glider(const GliderDraft& g, const std::string& path, Reading& readin
   if (!g.line.connect.empty() && !g.line.listen.empty())
     reading.complain(path + ".line", "both connect and listen", {}, "one of the two");
   const auto& text = g.line.connect.empty() ? g.line.listen : g.line.connect;
-  if (!text.empty() && !address(text, true)) reading.complain(path + ".line", "no address", config::shown(text), "HOST:PORT");
+  if (!text.empty() && !address(text, true))
+    reading.complain(path + ".line", "no address", config::shown(text), "HOST:PORT");
   if (g.variation_deg && g.rotation_deg)
     reading.complain(path + ".frame", "both magnetic_variation_deg and rotation_deg", {}, "one of the two");
-  if (g.climb_to >= g.dive_depth) reading.complain(path + ".vehicle.climb_to_m", "not above the dive depth", {}, "less than dive_depth_m");
+  if (g.climb_to >= g.dive_depth)
+    reading.complain(path + ".vehicle.climb_to_m", "not above the dive depth", {}, "less than dive_depth_m");
   // The transfer of a short list has to fit between the script and the end of the window.
   if (g.call.call_after + g.call.dockzr_after + 60 > g.times.surface - g.times.post_fix)
     reading.complain(path + ".call.dockzr_after_s", "the script would run after the glider has dived", {},
@@ -54,14 +56,18 @@ void check_glider(const GliderDraft& g, const std::string& path, Reading& readin
 
 void check_truth(const TruthDraft& t, Reading& reading) {
   const auto given = [&](const char* key) { return reading.places.count(std::string{"truth."} + key) > 0; };
-  const int count = (given("grid") ? 1 : 0) + (given("analytic") ? 1 : 0) + (given("coastal") ? 1 : 0) + (t.still ? 1 : 0);
-  if (count != 1) reading.complain("truth", count == 0 ? "no ocean" : "more than one ocean", {}, "one of grid, analytic, coastal, still: true");
+  const int count =
+      (given("grid") ? 1 : 0) + (given("analytic") ? 1 : 0) + (given("coastal") ? 1 : 0) + (t.still ? 1 : 0);
+  if (count != 1)
+    reading.complain("truth", count == 0 ? "no ocean" : "more than one ocean", {},
+                     "one of grid, analytic, coastal, still: true");
   const auto& c = t.coastal;
   if (!given("coastal") || !c.west_deg || !c.east_deg || !c.south_deg || !c.north_deg) return;
   if (*c.east_deg <= *c.west_deg || *c.east_deg - *c.west_deg > 20)
     reading.complain("truth.coastal.area.east_deg", "no width of an area", {}, "greater than west_deg by at most 20");
   if (*c.north_deg <= *c.south_deg || *c.north_deg - *c.south_deg > 20)
-    reading.complain("truth.coastal.area.north_deg", "no height of an area", {}, "greater than south_deg by at most 20");
+    reading.complain("truth.coastal.area.north_deg", "no height of an area", {},
+                     "greater than south_deg by at most 20");
 }
 
 void check(const ScenarioDraft& d, Reading& reading) {
@@ -70,7 +76,8 @@ void check(const ScenarioDraft& d, Reading& reading) {
   for (std::size_t i = 0; i < d.gliders.size(); ++i) {
     const auto path = "gliders[" + std::to_string(i) + "]";
     check_glider(d.gliders[i], path, reading);
-    if (!names.insert(d.gliders[i].name).second) reading.complain(path + ".name", "two gliders with one name", d.gliders[i].name);
+    if (!names.insert(d.gliders[i].name).second)
+      reading.complain(path + ".name", "two gliders with one name", d.gliders[i].name);
     if (!folders.insert(d.gliders[i].folder).second)
       reading.complain(path + ".folder", "two gliders with one folder", config::shown(d.gliders[i].folder));
   }

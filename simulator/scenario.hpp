@@ -33,26 +33,26 @@ struct TruthPlan {
 
 /// Where a glider's dialog goes.
 struct LineAddress {
-  bool connect{true};   ///< we dial the daemon's `listen`; otherwise it dials us
+  bool connect{true};  ///< we dial the daemon's `listen`; otherwise it dials us
   std::string host;
   std::uint16_t port{};
   friend bool operator==(const LineAddress&, const LineAddress&) = default;
 };
 
 struct ScenarioGlider {
-  GliderPlan plan;                 ///< setup.list is empty when initial_list names a file: glidersim reads it
-  std::string initial_list;        ///< path; empty: one waypoint, the goal, with `initial_radius_m`
-  std::string folder;              ///< of its dockserver: to-glider and archive are made inside
+  GliderPlan plan;           ///< setup.list is empty when initial_list names a file: glidersim reads it
+  std::string initial_list;  ///< path; empty: one waypoint, the goal, with `initial_radius_m`
+  std::string folder;        ///< of its dockserver: to-glider and archive are made inside
   LineAddress line;
 };
 
 struct Scenario {
   std::uint64_t seed{1};
   Instant start;
-  std::string coast;               ///< path of a .coast file; empty: the truth's own land
-  std::string clock;               ///< path of the Unix socket on which time is handed out
-  bool charge_computing{};         ///< compute_time: measured
-  double daemon_wait_s{60};        ///< how long a missing daemon is waited for
+  std::string coast;         ///< path of a .coast file; empty: the truth's own land
+  std::string clock;         ///< path of the Unix socket on which time is handed out
+  bool charge_computing{};   ///< compute_time: measured
+  double daemon_wait_s{60};  ///< how long a missing daemon is waited for
   TruthPlan truth;
   EndPlan end;
   std::vector<ScenarioGlider> gliders;

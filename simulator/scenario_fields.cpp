@@ -41,17 +41,19 @@ Fields<FaultPlan> fault_fields() {
   Shape numbers;
   numbers.kind = Shape::Kind::list;
   numbers.parts.push_back(Fields<FaultPlan>::whole_shape(between(1, 1e6)));
-  f.custom({"surfacings", "surfacings that it always strikes, counted from 1"}, numbers, "[]",
-           [](const At& at, FaultPlan& plan) {
-             if (!config::expect_list(at, 0, 10'000)) return;
-             for (std::size_t i = 0; i < at.node.items.size(); ++i)
-               if (const auto n = config::read_whole(at.item(i), between(1, 1e6))) plan.surfacings.push_back(static_cast<int>(*n));
-           },
-           [](const FaultPlan& plan, const std::string& path, Effective& out) {
-             std::vector<std::string> texts;
-             for (const int n : plan.surfacings) texts.push_back(std::to_string(n));
-             out.leaf(path, "surfacings", config::yaml_list(texts));
-           });
+  f.custom(
+      {"surfacings", "surfacings that it always strikes, counted from 1"}, numbers, "[]",
+      [](const At& at, FaultPlan& plan) {
+        if (!config::expect_list(at, 0, 10'000)) return;
+        for (std::size_t i = 0; i < at.node.items.size(); ++i)
+          if (const auto n = config::read_whole(at.item(i), between(1, 1e6)))
+            plan.surfacings.push_back(static_cast<int>(*n));
+      },
+      [](const FaultPlan& plan, const std::string& path, Effective& out) {
+        std::vector<std::string> texts;
+        for (const int n : plan.surfacings) texts.push_back(std::to_string(n));
+        out.leaf(path, "surfacings", config::yaml_list(texts));
+      });
   return f;
 }
 
@@ -64,8 +66,10 @@ Fields<GliderDraft> vehicle_fields() {
   f.number({"glide_angle_deg", "of the path below the horizon"}, &G::glide_angle, kDegree, between(5, 60));
   f.number({"dive_depth_m", "lower turning depth"}, &G::dive_depth, 1, between(5, 6000));
   f.number({"climb_to_m", "upper turning depth of inner yos"}, &G::climb_to, 1, between(0, 6000));
-  f.whole({"current_correction", "u_use_current_correction: 0 ignores currents, 1 uses the last measured"}, &G::correction, between(0, 1));
-  f.number({"heading_bias_deg", "true heading less wanted heading, clockwise"}, &G::heading_bias, kDegree, between(-90, 90));
+  f.whole({"current_correction", "u_use_current_correction: 0 ignores currents, 1 uses the last measured"},
+          &G::correction, between(0, 1));
+  f.number({"heading_bias_deg", "true heading less wanted heading, clockwise"}, &G::heading_bias, kDegree,
+           between(-90, 90));
   return f;
 }
 
@@ -77,26 +81,28 @@ Fields<GliderDraft> schedule_fields() {
   f.number({"cycle_s", "time between two looks at heading and waypoint"}, &G::cycle_s, 1, between(1, 300));
   // The interval of a pilot's schedule: from the fix that is printed to the dive.
   Shape minutes = Fields<G>::number_shape(between(5, 240));
-  f.custom({"surface_min", "from the last fix to the dive"}, minutes, "15",
-           [](const At& at, G& g) {
-             if (const auto v = config::read_number(at, between(5, 240))) g.times.surface = *v * kPerMinute;
-           },
-           [](const G& g, const std::string& path, Effective& out) {
-             out.leaf(path, "surface_min", config::yaml_number(g.times.surface, kPerMinute));
-           });
+  f.custom(
+      {"surface_min", "from the last fix to the dive"}, minutes, "15",
+      [](const At& at, G& g) {
+        if (const auto v = config::read_number(at, between(5, 240))) g.times.surface = *v * kPerMinute;
+      },
+      [](const G& g, const std::string& path, Effective& out) {
+        out.leaf(path, "surface_min", config::yaml_number(g.times.surface, kPerMinute));
+      });
   return f;
 }
 
 Fields<CallSetup> call_fields() {
   Fields<CallSetup> f;
   f.number({"after_fix_s", "from the last fix to the connection block"}, &CallSetup::call_after, 1, between(5, 600));
-  f.number({"dockzr_after_s", "from the connection block to the script's `!dockzr *`"}, &CallSetup::dockzr_after, 1, between(16, 3600));
+  f.number({"dockzr_after_s", "from the connection block to the script's `!dockzr *`"}, &CallSetup::dockzr_after, 1,
+           between(16, 3600));
   f.number({"reprint_s", "between two at-surface blocks"}, &CallSetup::reprint_every, 1, between(10, 600));
   f.number({"bytes_per_s", "speed of a transfer to the glider"}, &CallSetup::bytes_per_s, 1, above_zero(1e6));
   f.word({"reread", "when the script presses Ctrl-F"}, &CallSetup::reread_always,
          std::vector<std::pair<std::string, bool>>{{"always", true}, {"after_transfer", false}});
-  f.word({"resume", "when it presses Ctrl-R: at the end of the surface interval, or when it is through"}, &CallSetup::resume_at_once,
-         std::vector<std::pair<std::string, bool>>{{"at_end", false}, {"at_once", true}});
+  f.word({"resume", "when it presses Ctrl-R: at the end of the surface interval, or when it is through"},
+         &CallSetup::resume_at_once, std::vector<std::pair<std::string, bool>>{{"at_end", false}, {"at_once", true}});
   return f;
 }
 
@@ -106,8 +112,11 @@ Fields<GliderDraft> glider_fields() {
   line.text({"connect", "HOST:PORT of the daemon's `listen`"}, &LineDraft::connect);
   line.text({"listen", "ADDRESS:PORT that the daemon dials"}, &LineDraft::listen);
   Fields<G> frame;
-  frame.maybe_number({"magnetic_variation_deg", "m_gps_mag_var, positive west", false, "0 without rotation_deg"}, &G::variation_deg, 1, between(-180, 180));
-  frame.maybe_number({"rotation_deg", "of the local frame's y axis, clockwise from true north", false, "from the variation"}, &G::rotation_deg, 1, between(-180, 180));
+  frame.maybe_number({"magnetic_variation_deg", "m_gps_mag_var, positive west", false, "0 without rotation_deg"},
+                     &G::variation_deg, 1, between(-180, 180));
+  frame.maybe_number(
+      {"rotation_deg", "of the local frame's y axis, clockwise from true north", false, "from the variation"},
+      &G::rotation_deg, 1, between(-180, 180));
   Fields<G> mission;
   mission.text({"file", "mission file it flies"}, &G::mission_file);
   mission.whole({"number", "MMMM of MMMM.SSSS"}, &G::mission_number, between(0, 9999));
@@ -115,14 +124,17 @@ Fields<GliderDraft> glider_fields() {
   Fields<G> faults;
   faults.part({"lost_calls", "no call at all"}, &G::lost_calls, fault_fields());
   faults.part({"not_taken", "the dockserver's script does not run"}, &G::not_taken, fault_fields());
-  faults.part({"no_connection_block", "the first block of the dialog is lost"}, &G::no_connection_block, fault_fields());
-  faults.part({"redial", "the link drops after the at-surface block and the glider calls again"}, &G::redial, fault_fields());
+  faults.part({"no_connection_block", "the first block of the dialog is lost"}, &G::no_connection_block,
+              fault_fields());
+  faults.part({"redial", "the link drops after the at-surface block and the glider calls again"}, &G::redial,
+              fault_fields());
   Fields<G> f;
   f.text({"name", "name in its dialog", true}, &G::name, config::kName);
   f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields());
   f.part({"goal", "where it is meant to go", true}, &G::goal, goal_fields());
   f.text({"initial_list", "goto list on board at the start", false, "the goal alone"}, &G::initial_list);
-  f.number({"initial_radius_m", "list_when_wpt_dist of a list that holds the goal alone"}, &G::initial_radius, 1, between(10, 1e5));
+  f.number({"initial_radius_m", "list_when_wpt_dist of a list that holds the goal alone"}, &G::initial_radius, 1,
+           between(10, 1e5));
   f.text({"folder", "dockserver folder of this glider, made if absent", true}, &G::folder);
   f.part({"line", "where its dialog goes: `connect` or `listen`"}, &G::line, line);
   f.section({"vehicle", "the glider itself"}, vehicle_fields());
@@ -165,11 +177,13 @@ void read_params(const At& at, AnalyticDraft& draft) {
 Fields<AnalyticDraft> analytic_fields() {
   using A = AnalyticDraft;
   Fields<A> f;
-  f.text({"kind", "constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet or gaussians", true}, &A::kind);
+  f.text({"kind", "constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet or gaussians", true},
+         &A::kind);
   f.part({"origin", "position of x = y = 0", true}, &A::origin_deg, place_fields());
   f.number({"length_scale_m", "metres to one unit of x and y"}, &A::length_scale, 1, above_zero(1e7));
   f.number({"speed_scale_m_per_s", "speed to one unit of (u, v)"}, &A::speed_scale, 1, above_zero(5));
-  f.maybe_number({"time_scale_s", "seconds to one unit of time", false, "length by speed"}, &A::time_scale, 1, above_zero(1e10));
+  f.maybe_number({"time_scale_s", "seconds to one unit of time", false, "length by speed"}, &A::time_scale, 1,
+                 above_zero(1e10));
   f.time({"t0", "when the field's time is 0", false, "the start"}, &A::t0);
   f.flag({"south", "signs of the southern hemisphere"}, &A::south);
   Shape map;
@@ -182,13 +196,14 @@ Fields<AnalyticDraft> analytic_fields() {
 template <class Member>
 void strength(Fields<CoastalDraft>& f, const char* name, const char* meaning, Member member, double low, double high) {
   const CoastalSpec standard;
-  f.custom({name, meaning}, Fields<CoastalDraft>::number_shape(between(low, high)), config::yaml_number(standard.*member),
-           [member, low, high](const At& at, CoastalDraft& d) {
-             if (const auto v = config::read_number(at, between(low, high))) d.spec.*member = *v;
-           },
-           [member, name](const CoastalDraft& d, const std::string& path, Effective& out) {
-             out.leaf(path, name, config::yaml_number(d.spec.*member));
-           });
+  f.custom(
+      {name, meaning}, Fields<CoastalDraft>::number_shape(between(low, high)), config::yaml_number(standard.*member),
+      [member, low, high](const At& at, CoastalDraft& d) {
+        if (const auto v = config::read_number(at, between(low, high))) d.spec.*member = *v;
+      },
+      [member, name](const CoastalDraft& d, const std::string& path, Effective& out) {
+        out.leaf(path, name, config::yaml_number(d.spec.*member));
+      });
 }
 
 Fields<CoastalDraft> coastal_fields() {
@@ -203,7 +218,8 @@ Fields<CoastalDraft> coastal_fields() {
   f.maybe_whole({"seed", "of this sea", false, "the scenario's seed"}, &C::seed, between(0, 9e15));
   f.word({"variant", "what the water does, or what the model says of it"}, &C::variant,
          std::vector<std::pair<std::string, Variant>>{{"truth", Variant::truth}, {"forecast", Variant::forecast}});
-  f.part({"from", "start of the straight way that the jets follow (without it the first glider's)"}, &C::from, place_fields());
+  f.part({"from", "start of the straight way that the jets follow (without it the first glider's)"}, &C::from,
+         place_fields());
   f.part({"to", "end of that way (without it the first glider's goal)"}, &C::to, place_fields());
   strength(f, "jet_m_per_s", "against the straight way, on it", &CoastalSpec::jet, -3, 3);
   strength(f, "counter_jet_m_per_s", "along the straight way, beside it", &CoastalSpec::counter_jet, -3, 3);
@@ -212,7 +228,8 @@ Fields<CoastalDraft> coastal_fields() {
   strength(f, "eddy_m_per_s", "strongest eddy", &CoastalSpec::eddy, 0, 3);
   strength(f, "tide_m_per_s", "M2, major axis", &CoastalSpec::tide, 0, 3);
   strength(f, "shift_km", "by which the truth's eddies are elsewhere", &CoastalSpec::shift_km, 0, 200);
-  strength(f, "tide_lag_deg", "phase of the truth's tide ahead of the forecast's", &CoastalSpec::tide_lag_deg, -360, 360);
+  strength(f, "tide_lag_deg", "phase of the truth's tide ahead of the forecast's", &CoastalSpec::tide_lag_deg, -360,
+           360);
   strength(f, "noise_m_per_s", "small eddies that only the truth has", &CoastalSpec::noise, 0, 1);
   return f;
 }

@@ -167,7 +167,8 @@ const std::vector<SurfacingRecord>& Simulation::surfacings(std::size_t i) const 
 const std::vector<DiveRecord>& Simulation::dives(std::size_t i) const { return lives_[i]->dives; }
 const GliderResult& Simulation::result(std::size_t i) const { return lives_[i]->result; }
 bool Simulation::all_arrived() const {
-  return std::all_of(lives_.begin(), lives_.end(), [](const auto& l) { return l->result.end == RunEnd::arrived; });
+  return std::all_of(lives_.begin(), lives_.end(),
+                     [](const auto& l) { return l->result.arrived_s && l->result.end != RunEnd::accident; });
 }
 
 }  // namespace glidehelm::simulator

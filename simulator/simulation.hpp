@@ -98,6 +98,7 @@ class Simulation {
   [[nodiscard]] const std::vector<SurfacingRecord>& surfacings(std::size_t i) const;
   [[nodiscard]] const std::vector<DiveRecord>& dives(std::size_t i) const;
   [[nodiscard]] const GliderResult& result(std::size_t i) const;
+  /// Every glider was inside its goal radius, and none came to grief afterwards.
   [[nodiscard]] bool all_arrived() const;
 
  private:

@@ -15,7 +15,8 @@ Expected<std::unique_ptr<world::Folder>, FolderError> make_path(world::Files& fi
   auto folder = files.make_folder(path, 0755);
   if (folder) return std::move(*folder);
   const auto slash = path.find_last_of('/');
-  if (folder.error().code != ENOENT || slash == std::string::npos || slash == 0) return unexpected(FolderError{folder.error().message()});
+  if (folder.error().code != ENOENT || slash == std::string::npos || slash == 0)
+    return unexpected(FolderError{folder.error().message()});
   auto parent = make_path(files, path.substr(0, slash));
   if (!parent) return parent;
   folder = files.make_folder(path, 0755);
@@ -30,7 +31,8 @@ Expected<std::unique_ptr<world::Folder>, FolderError> make_marked(world::Files& 
   const auto names = (*folder)->list();
   if (!names) return unexpected(FolderError{names.error().message()});
   if (!names->empty())
-    return unexpected(FolderError{path + " holds files and has no marker " + kMarker + ": it was not made by glidersim. Name another folder."});
+    return unexpected(FolderError{path + " holds files and has no marker " + kMarker +
+                                  ": it was not made by glidersim. Name another folder."});
   const auto marker = (*folder)->create(kMarker, "This folder was made by glidersim.\n", 0644);
   if (!marker) return unexpected(FolderError{marker.error().message()});
   return folder;
@@ -69,8 +71,10 @@ std::vector<OfferedFile> DockFolder::look() {
     const auto stat = to_glider_->stat(name);
     if (!stat || !stat->regular) continue;
     auto bytes = to_glider_->read(name, kLargestFile);
-    if (bytes) found.push_back({name, std::move(*bytes)});
-    else trouble_ = bytes.error().message();
+    if (bytes)
+      found.push_back({name, std::move(*bytes)});
+    else
+      trouble_ = bytes.error().message();
   }
   return found;
 }

@@ -30,18 +30,19 @@ Expected<Done, world::NetError> DialogLine::start() {
 
 void DialogLine::dial() {
   std::weak_ptr<int> alive = alive_;
-  net_.connect_tcp(address_.host, address_.port, [this, alive](Expected<std::shared_ptr<world::Stream>, world::NetError> answer) {
-    if (alive.expired() || closed_ || stream_) return;
-    if (answer) {
-      complained_ = false;
-      return adopt(*answer);
-    }
-    if (!complained_ && told_.said) told_.said(answer.error().message() + "; trying again");
-    complained_ = true;
-    wall_.call_at(wall_.tick() + kRedialAfter, [this, alive] {
-      if (!alive.expired() && !closed_ && !stream_) dial();
-    });
-  });
+  net_.connect_tcp(address_.host, address_.port,
+                   [this, alive](Expected<std::shared_ptr<world::Stream>, world::NetError> answer) {
+                     if (alive.expired() || closed_ || stream_) return;
+                     if (answer) {
+                       complained_ = false;
+                       return adopt(*answer);
+                     }
+                     if (!complained_ && told_.said) told_.said(answer.error().message() + "; trying again");
+                     complained_ = true;
+                     wall_.call_at(wall_.tick() + kRedialAfter, [this, alive] {
+                       if (!alive.expired() && !closed_ && !stream_) dial();
+                     });
+                   });
 }
 
 void DialogLine::adopt(std::shared_ptr<world::Stream> stream) {

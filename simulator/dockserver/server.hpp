@@ -18,8 +18,8 @@ namespace glidehelm::simulator {
 class DialogLine {
  public:
   struct Told {
-    std::function<void()> changed;                  ///< opened or closed
-    std::function<void(const std::string&)> said;   ///< what an operator of the simulator may want to know
+    std::function<void()> changed;                 ///< opened or closed
+    std::function<void(const std::string&)> said;  ///< what an operator of the simulator may want to know
   };
   DialogLine(world::Net& net, world::Clock& wall, LineAddress address, Told told);
   ~DialogLine();

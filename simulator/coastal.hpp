@@ -20,8 +20,8 @@ struct CoastalSpec {
   double west_deg{}, east_deg{}, south_deg{}, north_deg{};  ///< area; east > west, at most 20° each way
   GeoPoint from, to;                                        ///< ends of the straight way that the jets follow
   double start_s{};          ///< epoch seconds: where eddies stand as drawn and the tide has its drawn phase
-  double jet{0.16};          ///< against the straight way, on it, m/s
-  double counter_jet{0.24};  ///< along the straight way, beside it, m/s
+  double jet{0.12};          ///< against the straight way, on it, m/s
+  double counter_jet{0.22};  ///< along the straight way, beside it, m/s
   double jet_width_km{6};    ///< e-folding half width
   double jet_offset_km{14};  ///< from the opposing to the favourable jet; the side is drawn
   double eddy{0.12};         ///< strongest eddy, m/s; each is drawn between half of it and all of it

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "daemon/ingest/fault.hpp"
+
+namespace glidehelm::ingest {
+
+/// Types as far as reading numbers needs them.
+enum class Type { text, int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64, other };
+[[nodiscard]] inline bool is_number(Type type) { return type != Type::text && type != Type::other; }
+[[nodiscard]] inline bool is_floating(Type type) { return type == Type::float32 || type == Type::float64; }
+
+struct Attribute {
+  std::string name;
+  Type type{Type::other};
+  std::string text;             ///< of text and string attributes
+  std::vector<double> numbers;  ///< of numeric ones
+};
+
+struct Dimension {
+  std::string name;
+  std::size_t length{};
+};
+
+struct Variable {
+  int id{};
+  std::string name;
+  Type type{Type::other};
+  std::vector<std::size_t> dimensions;  ///< indices into NetcdfFile::dimensions
+  std::vector<Attribute> attributes;
+
+  [[nodiscard]] const Attribute* find(std::string_view attribute) const;
+  /// Trimmed text of an attribute; empty when absent or not text.
+  [[nodiscard]] std::string text(std::string_view attribute) const;
+  /// The unit: `units`, also written `unit`, `Unit`, `Units`; nothing when none of them is there (or it is empty).
+  [[nodiscard]] std::optional<std::string> unit() const;
+};
+
+/// One NetCDF file of any format, held in memory: the library never opens a path (it would open it twice), and nobody can
+/// change the bytes while they are read. Only the root group is read.
+class NetcdfFile {
+ public:
+  /// Reads the header. Precondition: check_whole() accepted the bytes, which stay alive.
+  static Result<NetcdfFile> open(std::span<const std::byte> bytes);
+  ~NetcdfFile();
+  NetcdfFile(NetcdfFile&& other) noexcept;
+  NetcdfFile& operator=(NetcdfFile&&) = delete;
+
+  [[nodiscard]] const std::vector<Dimension>& dimensions() const { return dimensions_; }
+  [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
+  [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }
+  [[nodiscard]] const Variable* find(std::string_view name) const;
+  /// Text of a global attribute; empty when absent.
+  [[nodiscard]] std::string text(std::string_view attribute) const;
+  [[nodiscard]] std::size_t length_of(std::size_t dimension) const { return dimensions_[dimension].length; }
+  /// "u(time, lat, lon)".
+  [[nodiscard]] std::string shape_of(const Variable& variable) const;
+
+  /// The stored numbers of a box of a variable as doubles, row-major, neither unpacked nor masked.
+  Result<std::vector<double>> read(const Variable& variable, std::span<const std::size_t> start,
+                                   std::span<const std::size_t> count) const;
+  Result<std::vector<double>> read(const Variable& variable) const;
+
+ private:
+  explicit NetcdfFile(int id) : id_{id} {}
+  Result<Done> read_header();
+  Result<std::vector<Attribute>> read_attributes(int variable, int count) const;
+  int id_{-1};
+  std::vector<Dimension> dimensions_;
+  std::vector<Variable> variables_;
+  std::vector<Attribute> attributes_;
+};
+
+}  // namespace glidehelm::ingest

@@ -30,7 +30,6 @@ struct PlanningRequest {
   Purpose purpose{Purpose::goal};
   planning::Problem problem;
   std::string method;                       ///< of planning.method
-  std::optional<Current> believed_current;  ///< ĉ of the first stint: the measured DAC in the true frame
   int slot{10};
   int max_waypoints{8};
   std::optional<Metres> list_radius;

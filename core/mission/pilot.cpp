@@ -367,6 +367,7 @@ planning::Problem Pilot::problem_now() const {
   p.glider = {glider_,      m.horizontal_speed, last_->believed_speed.value_or(m.horizontal_speed),      m.glide_angle,
               m.dive_depth, m.climb_to,         last_->current_correction.value_or(m.current_correction)};
   p.schedule = {m.stint, m.first_stint, m.surface, m.surface};
+  p.believed_current = believed_;
   p.coast_margin = m.min_distance_to_coast;
   p.headings = m.headings;
   p.cell = m.cell.value_or(Metres{0});
@@ -383,7 +384,6 @@ void Pilot::begin_planning() {
   request.purpose = arrived_ ? PlanningRequest::Purpose::station : PlanningRequest::Purpose::goal;
   request.problem = problem_now();
   request.method = mission_->method;
-  request.believed_current = believed_;
   request.slot = mission_->slot;
   request.max_waypoints = mission_->max_waypoints;
   request.list_radius = mission_->list_radius;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,10 +48,11 @@ struct Problem {
   Objective objective;
   model::Glider glider;
   model::DiveSchedule schedule;
-  double horizon_s{};             ///< epoch seconds after which no plan may run
-  Metres coast_margin{2000};      ///< clearance that the track keeps; a start inside it may only move outwards
-  int headings{18};               ///< M
-  Metres cell{};                  ///< merging cell of the search; 0 = half a stint through still water
+  std::optional<Current> believed_current;  ///< ĉ of the first stint (correction 1): the measured DAC, true frame
+  double horizon_s{};                       ///< epoch seconds after which no plan may run
+  Metres coast_margin{2000};  ///< clearance that the track keeps; a start inside it may only move outwards
+  int headings{18};           ///< M
+  Metres cell{};              ///< merging cell of the search; 0 = half a stint through still water
   std::uint64_t seed{1};
   friend bool operator==(const Problem&, const Problem&) = default;
 };
@@ -75,20 +77,28 @@ struct Budget {
 enum class PlanStatus { reaches_goal, closest_approach };
 
 struct Plan {
-  std::string method;              ///< honest: the stage that made these stints
+  std::string method;  ///< honest: the stage that made these stints
   PlanStatus status{PlanStatus::closest_approach};
   std::vector<vehicle::Stint> stints;
-  double arrival_s{};              ///< epoch seconds at which the goal radius is crossed; NaN when it is not
-  Metres remaining;                ///< geodesic distance from the goal's centre at the closest position reached
-  std::string reason;              ///< in words, when the goal is not reached
+  double arrival_s{};  ///< epoch seconds at which the goal radius is crossed; NaN when it is not
+  Metres remaining;    ///< geodesic distance from the goal's centre at the closest position reached
+  std::string reason;  ///< in words, when the goal is not reached
   Statistics statistics;
-  std::uint64_t cut_at{};          ///< work count at which `expired` stopped the search; 0 = it ran to its end
+  std::uint64_t cut_at{};  ///< work count at which `expired` stopped the search; 0 = it ran to its end
   friend bool operator==(const Plan&, const Plan&) = default;
 
   [[nodiscard]] bool reaches_goal() const { return status == PlanStatus::reaches_goal; }
 };
 
-enum class NoPlan { start_on_land, goal_on_land, start_outside_field, goal_outside_field, no_forecast, boxed_in, out_of_budget };
+enum class NoPlan {
+  start_on_land,
+  goal_on_land,
+  start_outside_field,
+  goal_outside_field,
+  no_forecast,
+  boxed_in,
+  out_of_budget
+};
 std::string_view word(NoPlan reason);
 /// A failure with the facts a pilot needs: "the goal is on land (0.8 km inside the coast)".
 struct PlanFailure {
@@ -109,8 +119,8 @@ class Planner {
   [[nodiscard]] virtual Capabilities capabilities() const noexcept = 0;
   /// Same input, same plan, on any thread count. `better` is called with every improvement on the way and once with
   /// the final plan before it is returned.
-  [[nodiscard]] virtual Expected<Plan, PlanFailure> plan(const Problem& problem, Members members, const chart::Chart& chart,
-                                                         const Budget& budget,
+  [[nodiscard]] virtual Expected<Plan, PlanFailure> plan(const Problem& problem, Members members,
+                                                         const chart::Chart& chart, const Budget& budget,
                                                          const std::function<void(const Plan&)>& better) const = 0;
 };
 

@@ -325,7 +325,7 @@ TEST_CASE("another measured current in the at-surface block makes a new plan bef
   final.water_is_final = true;
   desk.step(SurfacingHeard{final, std::nullopt});
   REQUIRE(desk.last<BeginPlanning>().size() == 1);
-  CHECK(desk.last<BeginPlanning>()[0].request.believed_current->speed().si() == Approx(0.25));
+  CHECK(desk.last<BeginPlanning>()[0].request.problem.believed_current->speed().si() == Approx(0.25));
   CHECK(desk.last<StopPlanning>().size() == 1);
 }
 

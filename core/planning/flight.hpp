@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "core/planning/planner.hpp"
+#include "core/vehicle/steering.hpp"
+
+/// From headings to a Plan: what every planner ends with.
+namespace glidehelm::planning {
+
+/// The goal of a problem as a disc.
+vehicle::Disc disc_of(const Problem& problem);
+/// The problem as the steering room takes it. `believed`: ĉ of the first stint.
+vehicle::Flight flight_of(const Problem& problem);
+vehicle::Waters waters_of(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart);
+
+/// Why nothing can be planned at all: a start or goal on land or outside the field or the chart, no forecast at the
+/// start's time. A start inside the coastal margin is fine, a goal inside it too.
+std::optional<PlanFailure> check_ends(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart);
+
+/// A plan from what was flown. When the goal is not reached, `reason` says why and `remaining` is the geodesic distance from
+/// the goal's centre at the nearest of the start, the dives and the surfacings.
+Plan plan_from(std::string method, const vehicle::FlownList& flown, const Problem& problem,
+               const Statistics& statistics);
+
+/// True when `a` is the better answer: arriving beats not arriving, then earlier, then nearer; a tie is not better.
+bool better_than(const Plan& a, const Plan& b);
+
+/// Still-water travel time of a problem, surface intervals included: (geodesic − radius)/U on the dive schedule. Three times
+/// this is the automatic horizon.
+Seconds still_water_time(const Problem& problem);
+
+}  // namespace glidehelm::planning

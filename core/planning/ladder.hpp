@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/planning/planner.hpp"
+
+namespace glidehelm::planning {
+
+/// `best`: stages from cheap to good, the best answer so far at every moment (product.md 4.4, 6).
+///
+/// direct → cts-astar. Each stage stops by work; `Budget::expired` only cuts it short. A plan keeps the name of the stage that made it, and the
+/// answer is never worse than that of any single stage: a later one replaces an earlier one only when it is better.
+class Ladder final : public Planner {
+ public:
+  [[nodiscard]] std::string_view name() const noexcept override { return "best"; }
+  [[nodiscard]] Capabilities capabilities() const noexcept override {
+    return {.time_varying = true, .obstacles = true};
+  }
+  [[nodiscard]] Expected<Plan, PlanFailure> plan(const Problem& problem, Members members, const chart::Chart& chart,
+                                                 const Budget& budget,
+                                                 const std::function<void(const Plan&)>& better) const override;
+};
+
+}  // namespace glidehelm::planning

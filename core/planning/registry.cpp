@@ -1,0 +1,18 @@
+#include "core/planning/registry.hpp"
+
+#include "core/planning/cts_astar.hpp"
+#include "core/planning/direct_to_goal.hpp"
+#include "core/planning/ladder.hpp"
+
+namespace glidehelm::planning {
+
+std::vector<std::string> method_names() { return {"direct", "cts-astar", "best"}; }
+
+std::unique_ptr<const Planner> planner_named(std::string_view name) {
+  if (name == "direct") return std::make_unique<DirectToGoal>();
+  if (name == "cts-astar") return std::make_unique<CtsAStar>();
+  if (name == "best") return std::make_unique<Ladder>();
+  return nullptr;
+}
+
+}  // namespace glidehelm::planning

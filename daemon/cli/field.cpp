@@ -1,0 +1,313 @@
+#include "daemon/cli/field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/base/text.hpp"
+#include "core/base/utc.hpp"
+#include "core/ocean/depth_average.hpp"
+#include "core/ocean/gridded.hpp"
+
+namespace glidehelm::cli {
+
+namespace {
+
+using nlohmann::ordered_json;
+
+int refuse(std::ostream& err, int code, const std::string& what) {
+  err << "glidehelm field: " << what << '\n';
+  return code;
+}
+
+std::string decimal(double value, int digits) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.*f", digits, value);
+  return buffer;
+}
+
+ordered_json text_or_null(const std::string& text) { return text.empty() ? ordered_json{} : ordered_json(text); }
+std::string time_text(double seconds) { return utc_text(instant_at(seconds)); }
+
+ordered_json axis_json(const std::vector<double>& axis) {
+  const double step = (axis.back() - axis.front()) / static_cast<double>(axis.size() - 1);
+  return {{"count", axis.size()},
+          {"first_deg", axis.front()},
+          {"last_deg", axis.back()},
+          {"step_deg", step},
+          {"even", ocean::GridAxis{axis}.uniform()}};
+}
+
+ordered_json info_json(const ocean::GridView& view) {
+  const auto& axes = view.axes;
+  const auto& facts = view.facts;
+  const auto statistics = ocean::statistics_of(view);
+  const ocean::GriddedField field{view, {}};
+  const auto box = field.coverage();
+  const auto degrees = [](double rad) { return rad * 180 / kPi; };
+  double longest = 0;
+  for (std::size_t t = 1; t < axes.times_s.size(); ++t)
+    longest = std::max(longest, axes.times_s[t] - axes.times_s[t - 1]);
+
+  ordered_json json;
+  json["schema"] = "glidehelm/field-info/v1";
+  json["cycle"] = facts.cycle;
+  json["reference_time"] = std::isnan(facts.reference_s) ? ordered_json{} : ordered_json(time_text(facts.reference_s));
+  json["provenance"] = view.provenance.hex();
+  json["variables"] = {{"east", {{"name", facts.east_variable}, {"unit", text_or_null(facts.east_unit)}}},
+                       {"north", {{"name", facts.north_variable}, {"unit", text_or_null(facts.north_unit)}}},
+                       {"recognised_by", facts.recognised_by}};
+  json["grid"] = {
+      {"kind", "rectilinear"}, {"latitudes", axis_json(axes.lats_deg)}, {"longitudes", axis_json(axes.lons_deg)}};
+  json["extent"] = {{"west_deg", axes.lons_deg.front()},
+                    {"east_deg", axes.lons_deg.back()},
+                    {"south_deg", axes.lats_deg.front()},
+                    {"north_deg", axes.lats_deg.back()},
+                    {"around_globe", degrees(box.east - box.west) > 359.999}};
+  json["times"] = axes.has_time ? ordered_json{{"count", axes.times_s.size()},
+                                               {"first", time_text(axes.times_s.front())},
+                                               {"last", time_text(axes.times_s.back())},
+                                               {"longest_step_s", longest},
+                                               {"unit", text_or_null(facts.time_unit)}}
+                                : ordered_json{};
+  json["depths_m"] = axes.has_depth ? ordered_json(axes.depths_m) : ordered_json::array();
+  json["wet_fraction"] = statistics.wet_fraction;
+  json["speed_m_per_s"] = {{"min", statistics.slowest}, {"mean", statistics.mean}, {"max", statistics.fastest}};
+  json["sources"] = ordered_json::array();
+  for (const auto& source : facts.sources)
+    json["sources"].push_back({{"file", source.name}, {"sha256", source.hash.hex()}});
+  json["warnings"] = facts.warnings;
+  return json;
+}
+
+void print_info(const ocean::GridView& view, std::ostream& out) {
+  const auto& axes = view.axes;
+  const auto& facts = view.facts;
+  const auto statistics = ocean::statistics_of(view);
+  const auto unit = [](const std::string& text) { return text.empty() ? std::string{"no unit, taken as m/s"} : text; };
+  out << "forecast   " << facts.cycle << '\n'
+      << "variables  " << facts.east_variable << " (" << unit(facts.east_unit) << "), " << facts.north_variable << " ("
+      << unit(facts.north_unit) << "), by " << facts.recognised_by << '\n'
+      << "grid       rectilinear, " << axes.lats_deg.size() << " latitudes " << decimal(axes.lats_deg.front(), 4)
+      << " to " << decimal(axes.lats_deg.back(), 4) << ", " << axes.lons_deg.size() << " longitudes "
+      << decimal(axes.lons_deg.front(), 4) << " to " << decimal(axes.lons_deg.back(), 4) << '\n';
+  if (axes.has_time)
+    out << "times      " << axes.times_s.size() << ", " << time_text(axes.times_s.front()) << " to "
+        << time_text(axes.times_s.back()) << '\n';
+  else
+    out << "times      none: the same at every instant\n";
+  if (axes.has_depth)
+    out << "depths     " << axes.depths_m.size() << ", " << decimal(axes.depths_m.front(), 1) << " to "
+        << decimal(axes.depths_m.back(), 1) << " m\n";
+  else
+    out << "depths     none\n";
+  out << "water      " << decimal(100 * statistics.wet_fraction, 1) << " % of the nodes, "
+      << decimal(statistics.slowest, 3) << " to " << decimal(statistics.fastest, 3) << " m/s, mean "
+      << decimal(statistics.mean, 3) << " m/s\n";
+  for (const auto& warning : facts.warnings) out << "warning    " << warning << '\n';
+}
+
+/// One place that is asked for.
+struct Query {
+  GeoPoint at;
+  double lat_deg{}, lon_deg{};
+  double time_s{};
+  std::optional<double> depth_m;
+};
+
+/// The field that a query is answered from, and the whole one for telling land from missing data.
+struct Source {
+  ocean::GriddedField field, full;
+  std::vector<double> times_s;
+};
+
+ordered_json answer(const Source& source, const Query& query) {
+  const Depth depth{Metres{query.depth_m.value_or(-100.0)}};
+  const auto sample = source.field.sample(query.at, depth, query.time_s);
+  if (sample)
+    return {{"east_m_per_s", sample->current.east.si()},
+            {"north_m_per_s", sample->current.north.si()},
+            {"extrapolated", sample->extrapolated}};
+  auto reason = sample.error();
+  std::string message;
+  switch (reason) {
+    case ocean::NoCurrent::outside_area:
+      message = "outside the area of the files";
+      break;
+    case ocean::NoCurrent::outside_time:
+      message = "outside the times of the files, " + time_text(source.times_s.front()) + " to " +
+                time_text(source.times_s.back());
+      break;
+    case ocean::NoCurrent::below_bottom:
+      message = "below the deepest level with water here";
+      break;
+    case ocean::NoCurrent::no_data:
+    case ocean::NoCurrent::land: {
+      // The shallowest level decides whether there is water at all.
+      const Depth top{Metres{-100}};
+      if (source.full.sample(query.at, top, query.time_s)) {
+        reason = ocean::NoCurrent::below_bottom;
+        message = "the water here ends above the depths asked for";
+        break;
+      }
+      const bool ever = std::any_of(source.times_s.begin(), source.times_s.end(),
+                                    [&](double t) { return source.full.sample(query.at, top, t).has_value(); });
+      reason = ever ? ocean::NoCurrent::no_data : ocean::NoCurrent::land;
+      message = ever ? "no value here at this time" : "no value here at any time: land by the model's mask";
+      break;
+    }
+  }
+  return {{"none", word(reason)}, {"message", message}};
+}
+
+/// Splits a line at commas; blanks around a cell do not count.
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  for (std::size_t at = 0;;) {
+    const auto end = line.find(',', at);
+    cells.emplace_back(trimmed(line.substr(at, end == std::string::npos ? end : end - at)));
+    if (end == std::string::npos) return cells;
+    at = end + 1;
+  }
+}
+
+Expected<Query, std::string> query_of(const std::vector<std::string>& cells) {
+  if (cells.size() != 3 && cells.size() != 4)
+    return unexpected(std::to_string(cells.size()) + " columns, allowed is lat,lon,time or lat,lon,time,depth");
+  const auto lat = number_from(cells[0]), lon = number_from(cells[1]);
+  if (!lat || !lon) return unexpected("\"" + (lat ? cells[1] : cells[0]) + "\" is no number of degrees");
+  const auto at = GeoPoint::from_degrees(*lat, *lon);
+  if (!at) return unexpected(at.error().message());
+  const auto time = utc_from_text(cells[2]);
+  if (!time) return unexpected("\"" + cells[2] + "\" is no time, allowed is like 2024-10-28T03:00:00Z");
+  Query query{*at, *lat, *lon, epoch_seconds(*time), std::nullopt};
+  if (cells.size() == 4 && !cells[3].empty()) {
+    query.depth_m = number_from(cells[3]);
+    if (!query.depth_m) return unexpected("\"" + cells[3] + "\" is no depth in metres");
+  }
+  return query;
+}
+
+Expected<std::vector<Query>, std::string> queries_of(const std::string& path, world::Files& files) {
+  const auto text = files.read(path, std::size_t{64} << 20);
+  if (!text) return unexpected(text.error().message());
+  std::vector<Query> queries;
+  int number = 0;
+  for (std::size_t at = 0; at < text->size();) {
+    auto end = text->find('\n', at);
+    if (end == std::string::npos) end = text->size();
+    const std::string line{trimmed(text->substr(at, end - at))};
+    at = end + 1;
+    ++number;
+    if (line.empty() || line.front() == '#') continue;
+    const auto cells = cells_of(line);
+    if (queries.empty() && lower(cells.front()).compare(0, 3, "lat") == 0) continue;
+    auto query = query_of(cells);
+    if (!query) return unexpected(path + ":" + std::to_string(number) + ": " + query.error());
+    queries.push_back(*query);
+  }
+  if (queries.empty()) return unexpected(path + ": no point in it");
+  return queries;
+}
+
+Source source_of(const FieldSampleOptions& options, const ocean::GridView& view) {
+  const ocean::GriddedOptions gridded{ocean::OutsideTime::forbid, options.interpolation, 1.5, false};
+  ocean::GriddedField full{view, gridded};
+  if (!options.depth_mean || view.axes.depths_m.size() == 1) return {full, full, view.axes.times_s};
+  const auto profile =
+      ocean::DiveProfile::between(Metres{options.depth_mean->first}, Metres{options.depth_mean->second});
+  return {ocean::GriddedField{ocean::depth_average(view, profile), gridded}, full, view.axes.times_s};
+}
+
+void print_answer(const ordered_json& json, std::ostream& out) {
+  if (json.contains("none"))
+    out << json["none"].get<std::string>() << ": " << json["message"].get<std::string>() << '\n';
+  else
+    out << "east " << decimal(json["east_m_per_s"].get<double>(), 4) << " m/s, north "
+        << decimal(json["north_m_per_s"].get<double>(), 4) << " m/s"
+        << (json["extrapolated"].get<bool>() ? ", extrapolated from the nearest water" : "") << '\n';
+}
+
+/// What is wrong with the options alone; empty when nothing is.
+std::string misuse_of(const FieldSampleOptions& options) {
+  if (options.files.empty()) return "no file was named";
+  if (options.points.empty() && (!options.lat_deg || !options.lon_deg))
+    return "--lat and --lon, or --points, are needed";
+  if (!options.points.empty() && (options.lat_deg || options.lon_deg || options.time))
+    return "--points brings its own places and times; leave out --lat, --lon and --time";
+  if (options.depth_m && options.depth_mean) return "--depth and --depth-mean exclude each other";
+  if (options.depth_m && !(*options.depth_m >= 0)) return "--depth is positive down, allowed is 0 or more";
+  if (options.depth_mean && !(options.depth_mean->first >= 0 && options.depth_mean->second > options.depth_mean->first))
+    return "--depth-mean MIN,MAX: allowed is 0 ≤ MIN < MAX";
+  return {};
+}
+
+}  // namespace
+
+int run_field_info(const FieldInfoOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
+  if (options.files.empty()) return refuse(err, 2, "no file was named");
+  const auto loaded = daemon::ingest_files(options.files, options.ingest, world);
+  if (!loaded) return refuse(err, 1, loaded.error());
+  if (options.json)
+    out << info_json((*loaded)->view).dump(2) << '\n';
+  else
+    print_info((*loaded)->view, out);
+  return 0;
+}
+
+int run_field_sample(const FieldSampleOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
+  if (const auto misuse = misuse_of(options); !misuse.empty()) return refuse(err, 2, misuse);
+  std::vector<Query> queries;
+  if (!options.points.empty()) {
+    auto read = queries_of(options.points, world.files);
+    if (!read) return refuse(err, 2, read.error());
+    queries = std::move(*read);
+  } else {
+    const auto at = GeoPoint::from_degrees(*options.lat_deg, *options.lon_deg);
+    if (!at) return refuse(err, 2, at.error().message());
+    queries.push_back({*at, *options.lat_deg, *options.lon_deg, 0, options.depth_m});
+  }
+  const auto loaded = daemon::ingest_files(options.files, options.ingest, world);
+  if (!loaded) return refuse(err, 1, loaded.error());
+  const auto& view = (*loaded)->view;
+  for (const auto& warning : view.facts.warnings) err << "glidehelm field: warning: " << warning << '\n';
+  if (options.points.empty()) {
+    if (!options.time && view.axes.times_s.size() > 1)
+      return refuse(err, 2,
+                    "--time is needed: the files have " + std::to_string(view.axes.times_s.size()) + " times, " +
+                        time_text(view.axes.times_s.front()) + " to " + time_text(view.axes.times_s.back()));
+    queries.front().time_s = options.time ? epoch_seconds(*options.time) : view.axes.times_s.front();
+  } else if (options.depth_m) {
+    for (auto& query : queries)
+      if (!query.depth_m) query.depth_m = options.depth_m;
+  }
+
+  const Source source = source_of(options, view);
+  bool all = true;
+  ordered_json samples = ordered_json::array();
+  for (const auto& query : queries) {
+    const auto result = answer(source, query);
+    all = all && !result.contains("none");
+    if (!options.json) {
+      if (!options.points.empty())
+        out << decimal(query.lat_deg, 5) << " " << decimal(query.lon_deg, 5) << " " << time_text(query.time_s) << "  ";
+      print_answer(result, out);
+      continue;
+    }
+    ordered_json entry{{"lat_deg", query.lat_deg}, {"lon_deg", query.lon_deg}, {"time", time_text(query.time_s)}};
+    if (query.depth_m) entry["depth_m"] = *query.depth_m;
+    entry.update(result);
+    samples.push_back(options.points.empty() ? result : entry);
+  }
+  if (options.json) {
+    const ordered_json document = options.points.empty() ? samples.front()
+                                                         : ordered_json{{"schema", "glidehelm/field-samples/v1"},
+                                                                        {"samples", std::move(samples)}};
+    out << document.dump(2) << '\n';
+  }
+  return all ? 0 : 1;
+}
+
+}  // namespace glidehelm::cli

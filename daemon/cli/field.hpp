@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/ocean/time_axis.hpp"
+#include "daemon/ingest_client.hpp"
+#include "daemon/world/world.hpp"
+
+namespace glidehelm::cli {
+
+/// `glidehelm field info FILE… [--json]`.
+struct FieldInfoOptions {
+  std::vector<std::string> files;  ///< names or shell patterns
+  daemon::IngestOptions ingest;
+  bool json{};
+};
+
+/// Says what a forecast is: variables recognised and why, grid, extent, times, depths, units, wet fraction, speeds,
+/// sources with their hashes, warnings.
+///
+/// JSON on `out`, schema glidehelm/field-info/v1: {"schema", "cycle", "reference_time" (null when not named), "provenance",
+/// "variables": {"east": {"name", "unit" (null: none, taken as m/s)}, "north": {…}, "recognised_by"},
+/// "grid": {"kind": "rectilinear", "latitudes": AXIS, "longitudes": AXIS}, "extent": {"west_deg", "east_deg", "south_deg",
+/// "north_deg", "around_globe"}, "times": {"count", "first", "last", "longest_step_s", "unit"} (null without a time axis),
+/// "depths_m": […] (empty without a depth axis), "wet_fraction", "speed_m_per_s": {"min", "mean", "max"},
+/// "sources": [{"file", "sha256"}], "warnings": […]}, AXIS being {"count", "first_deg", "last_deg", "step_deg" (mean),
+/// "even"}. Messages on `err`. Returns 0; 1 when the files are refused; 2 without files.
+int run_field_info(const FieldInfoOptions& options, world::World& world, std::ostream& out, std::ostream& err);
+
+/// `glidehelm field sample FILE… --lat --lon --time [--depth M | --depth-mean MIN,MAX] | --points CSV [--json]`.
+struct FieldSampleOptions {
+  std::vector<std::string> files;
+  daemon::IngestOptions ingest;
+  std::optional<double> lat_deg, lon_deg;
+  std::optional<Instant> time;                          ///< may be left out for a field with at most one time
+  std::optional<double> depth_m;                        ///< none: the shallowest level
+  std::optional<std::pair<double, double>> depth_mean;  ///< plain mean between two depths
+  std::string points;                                   ///< CSV of lat,lon,time[,depth]; a heading line is allowed
+  ocean::Interpolation interpolation{ocean::Interpolation::linear};
+  bool json{};
+};
+
+/// The current at one place, or at every place of a CSV. JSON for one: {"east_m_per_s", "north_m_per_s", "extrapolated"} or
+/// {"none": "land | no_data | below_bottom | outside_area | outside_time", "message"}; for many, schema
+/// glidehelm/field-samples/v1: {"schema", "samples": [{"lat_deg", "lon_deg", "time", "depth_m"?, and the same}]}.
+/// A place that has no value at any time of the files is `land` (there is no coastline here: the model's mask is all there
+/// is); one that has a value at another time is `no_data`. Times outside the files are `outside_time`.
+/// Returns 0; 1 when a place has no current or the files are refused; 2 for misuse, the line of the CSV named.
+int run_field_sample(const FieldSampleOptions& options, world::World& world, std::ostream& out, std::ostream& err);
+
+}  // namespace glidehelm::cli

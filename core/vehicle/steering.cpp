@@ -165,7 +165,7 @@ Metres list_radius(std::vector<double> legs, double drift, const ListOptions& op
   std::sort(sorted.begin(), sorted.end());
   const double r = std::max({0.1 * sorted[sorted.size() / 2], kSmallestRadius, 2 * drift});
   // Below the first leg: a waypoint inside its own ring is hit at once. Half of it leaves room for an early surfacing.
-  return Metres{std::max(10.0, std::min(r, std::max(kSmallestRadius, 0.5 * legs.front())))};
+  return Metres{std::ceil(std::max(10.0, std::min(r, std::max(kSmallestRadius, 0.5 * legs.front()))))};
 }
 
 Stint stint_of(const State& dive, const Dive::Outcome& flown) {

@@ -73,8 +73,12 @@ Kept keeps_margin(std::span<const TrackPoint> track, std::size_t first, std::siz
     const bool crosses = outside && margin <= 0 && kind == Distance::clearance &&
                          !chart.segment_is_clear(track[i - 1].lat, track[i - 1].lon, p.lat, p.lon, 0.0);
     outside = true;
-    if (d < margin || crosses) return {false, std::min(d, margin), i};
-    if (d < kept.found) kept = {true, d, i};
+    if (d < margin || crosses) kept.holds = false;
+    const double nearest = crosses ? std::min(d, 0.0) : d;
+    if (nearest < kept.found) {
+      kept.found = nearest;
+      kept.where = i;
+    }
   }
   return outside ? kept : inside;
 }

@@ -76,9 +76,9 @@ Expected<chart::ChartSources, InputProblem> open_chart(const VerifyRequest& requ
   const auto bytes = (*mapping)->bytes();
   if (Sha256::of(bytes) != request.coast->hash)
     return problem(request.coast->path, "is not the coast file that was planned on");
-  auto coast = chart::Coast::read(bytes);
+  const auto coast = chart::Coast::parse(as_text(bytes));
   if (!coast) return problem(request.coast->path, coast.error().message());
-  sources.coast = std::make_shared<const chart::Coast>(*std::move(coast));
+  sources.coast = *coast;
   return sources;
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <limits>
 
+#include "core/chart/coast.hpp"
 #include "tests/core/safety/sample_dossier.hpp"
 
 // Every rule is broken alone, on both sides of its limit.
@@ -188,6 +189,39 @@ TEST_CASE("rule 1 waypoints: each lies inside keep-in, outside keep-out and insi
   CHECK(c.failing() == "");
   c.field.box.east = goal.lon.radians() - 1e-6;
   CHECK(c.failing() == "1 waypoints");
+}
+
+TEST_CASE("rule 1 waypoints: none lies on land or outside the coast file") {
+  auto c = good_case();
+  fly_until(c, 0);
+  const auto coast = [&](double half_deg, double east_m) {
+    // an island 2 km wide whose western shore lies `east_m` east of the goal
+    const auto units = [](double deg) { return static_cast<std::int64_t>(std::llround(deg * 1e7)); };
+    const double lat = c.dossier.at.fix.lat.degrees(), lon = c.dossier.at.fix.lon.degrees();
+    const chart::CoastArea area{units(lon - half_deg), units(lon + half_deg), units(lat - half_deg),
+                                units(lat + half_deg)};
+    chart::CoastRing ring{{}, std::vector<bool>(4, false)};
+    const auto goal = c.dossier.promise.goal;
+    for (const auto& [e, n] :
+         std::vector<std::pair<double, double>>{{0, -1000}, {2000, -1000}, {2000, 1000}, {0, 1000}}) {
+      const auto p = destination(goal, Bearing{Radians{std::atan2(east_m + e, n)}}, Metres{std::hypot(east_m + e, n)});
+      ring.points.push_back({static_cast<std::int32_t>(units(p.lon.degrees()) - area.west),
+                             static_cast<std::int32_t>(units(p.lat.degrees()))});
+    }
+    auto made = chart::Coast::make(area, "a test", {ring});
+    REQUIRE(made.has_value());
+    c.sources.coast = *made;
+  };
+  coast(0.5, 50);
+  CHECK(c.failing() == "");
+  CHECK(margin(c.judged(), "1 waypoints").found == Approx(50).margin(1));
+  coast(0.5, -50);
+  CHECK(c.failing() == "1 waypoints");
+  CHECK(margin(c.judged(), "1 waypoints").message.find("lies on land") != std::string::npos);
+  // the goal lies 0.127 degrees north of the fix
+  c.sources.coast = *chart::Coast::make({-305'000'000, -295'000'000, 395'000'000, 401'260'000}, "a test", {});
+  CHECK(c.failing() == "1 waypoints");
+  CHECK(margin(c.judged(), "1 waypoints").message.find("outside the coast file") != std::string::npos);
 }
 
 TEST_CASE("rule 1 waypoints: without a coastline the forecast's land is land") {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "core/chart/coast.hpp"
 #include "tests/core/safety/sample_dossier.hpp"
 #include "tests/support/verdict.hpp"
 
@@ -166,6 +167,22 @@ TEST_CASE("a named coast file that is another or cannot be read gives no verdict
   CHECK(desk.failing() == "here.coast: is not the coast file that was planned on");
   desk.files.content["here.coast"] = "coast bytes";
   CHECK(desk.failing().rfind("here.coast: ", 0) == 0);
+}
+
+TEST_CASE("a coast file of the request is the land that is judged") {
+  Desk desk;
+  const auto with = [&](std::int32_t x) {
+    // a rectangle from x (1e-7 degrees east of 31° W) to 2 km east of it, across the latitude of the second waypoint
+    chart::CoastRing ring{{{x, 400'000'000}, {x + 200'000, 400'000'000}, {x + 200'000, 401'000'000}, {x, 401'000'000}},
+                          std::vector<bool>(4, false)};
+    const auto coast = chart::Coast::make({-310'000'000, -290'000'000, 390'000'000, 410'000'000}, "a test", {ring});
+    REQUIRE(coast.has_value());
+    desk.files.content["here.coast"] = (*coast)->text();
+    desk.request.coast = InputFile{"here.coast", Sha256::of((*coast)->text())};
+    return desk.failing();
+  };
+  CHECK(with(5'000'000) == "");  // 43 km to the west
+  CHECK(with(10'500'000).find("2 land") != std::string::npos);
 }
 
 TEST_CASE("an explanation names broken rules first and leaves absent numbers out") {

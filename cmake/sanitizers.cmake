@@ -6,3 +6,7 @@ if(GLIDEHELM_SANITIZE)
     add_compile_options(-fsanitize=float-divide-by-zero,float-cast-overflow)
   endif()
 endif()
+# The rooms carry libFuzzer's coverage counters, so that it learns from the code under test; only targets link its main.
+if(GLIDEHELM_FUZZ)
+  add_compile_options(-fsanitize=fuzzer-no-link)
+endif()

@@ -80,7 +80,7 @@ void check_line(const At& at, const LineDraft& line) {
   if (is_set(".listen") && is_set(".connect")) complain("", "both listen and connect", {}, "one of the two");
   if (!is_set(".listen") && !is_set(".connect"))
     complain("", "neither listen nor connect", {}, "{listen: ADDRESS:PORT} or {connect: HOST:PORT}");
-  if (is_set(".connect") && is_set(".allow")) complain(".allow", "goes with listen only", {}, {});
+  if (is_set(".connect") && !line.allow.empty()) complain(".allow", "goes with listen only", {}, {});
   if (!line.listen) return;
   const auto& host = line.listen->host;
   const auto address = IpAddress::from_text(host == "localhost" ? "127.0.0.1" : host);

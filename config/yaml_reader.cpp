@@ -34,14 +34,13 @@ const Node* Node::find(std::string_view key) const {
   return nullptr;
 }
 
-std::string shown(std::string_view text) {
-  constexpr std::size_t kMost = 60;
+std::string shown(std::string_view text, std::size_t at_most) {
   constexpr char kHex[] = "0123456789abcdef";
   std::string result;
   std::size_t characters = 0;
   for (const char c : text) {
     const auto byte = static_cast<unsigned char>(c);
-    if ((byte & 0xC0U) != 0x80U && characters++ == kMost) return result + "…";
+    if ((byte & 0xC0U) != 0x80U && characters++ == at_most) return result + "…";
     if (byte < 0x20 || byte == 0x7F)
       result += {'\\', 'x', kHex[byte >> 4U], kHex[byte & 15U]};
     else
@@ -366,7 +365,7 @@ bool parse(const std::string& text, Lines& lines, Builder& builder, Problems& pr
   } catch (const Enough&) {
     return builder.complete;
   } catch (const YAML::Exception& error) {
-    problems.add(lines.place(lines.offset(error.mark)), {}, "not YAML: " + error.msg);
+    problems.add(lines.place(lines.offset(error.mark)), {}, "not YAML: " + shown(error.msg, 200));
   } catch (const std::exception& error) {
     problems.add(Place{}, {}, std::string{"cannot be read as YAML: "} + error.what());
   }

@@ -81,9 +81,9 @@ inline constexpr std::size_t kMostErrors = 100;  ///< of one file; then one more
 /// mark at the start and CR LF line ends are taken. Linear in the length but for yaml-cpp itself; throws nothing.
 Document read_yaml(std::string_view text, std::string file);
 
-/// Something of a file for a message: at most 60 characters, control characters escaped, so that no file can forge a
+/// Something of a file for a message: at most `at_most` characters, control characters escaped, so that no file can forge a
 /// line of a log.
-std::string shown(std::string_view text);
+std::string shown(std::string_view text, std::size_t at_most = 60);
 
 /// Collects the errors of one file up to `kMostErrors`.
 class Problems {

@@ -151,7 +151,8 @@ TEST_CASE("mistakes outside the gliders are named too") {
 
 TEST_CASE("the daemon's values in force read back to the same") {
   const auto file = read("clock: {simulated: run/clock.sock}\ngliders:\n  - " + kGlider +
-                         "\n  - {name: b, line: {listen: \"0.0.0.0:1\", allow: [192.0.2.0/24]}, to_glider: /g/b}\n");
+                         "\n  - {name: b, line: {listen: \"0.0.0.0:1\", allow: [192.0.2.0/24]}, to_glider: /g/b}\n" +
+                         "  - {name: c, line: {connect: \"h:1\"}, to_glider: /g/c}\n");
   CAPTURE(file.effective);
   const auto again = read_daemon_file(file.effective, "/etc/glidehelm/d.yaml");
   REQUIRE(again);

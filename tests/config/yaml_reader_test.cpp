@@ -176,5 +176,7 @@ TEST_CASE("files, values and errors are bounded") {
 
 TEST_CASE("what a file says cannot forge a line of a log") {
   CHECK(config::shown("a\nb\x1B[31m") == "a\\x0ab\\x1b[31m");
+  // yaml-cpp quotes the byte after the backslash in its message: here the one that it takes for the end of the file.
+  CHECK(lines_of(read_yaml("a: \"b\\", "f").errors) == Lines{"1:7 not YAML: unknown escape character: \\x04"});
   CHECK(config::shown(std::string(100, 'x')) == std::string(60, 'x') + "…");
 }

@@ -292,38 +292,3 @@ TEST_CASE("effective values carry their origin and read back to the same") {
   CHECK(again.thing.angle == r.thing.angle);
   CHECK(again.thing.inner.label == "on");
 }
-
-TEST_CASE("a printed number reads back to exactly the same quantity") {
-  for (const double unit : {1.0, 60.0, 3600.0, 1000.0, kPi / 180})
-    for (const double value :
-         {26.0, 0.1, 1.0 / 3.0, 123456.789, 29.1667, -15.500000000000002, 1e-7, 9007199254740992.0}) {
-      CAPTURE(unit, value);
-      const double si = value * unit;
-      CHECK(std::stod(yaml_number(si, unit)) * unit == si);
-    }
-  CHECK(yaml_number(26 * (kPi / 180), kPi / 180) == "26");
-  CHECK(yaml_number(0.3) == "0.3");
-}
-
-TEST_CASE("texts are printed so that YAML reads them as texts") {
-  for (const char* text :
-       {"yes", "null", "7", "a: b", "a # b", "*.nc", "\"q\"", "back\\slash", "[x]", "line\nend", "plain-1", "/a/b.c"}) {
-    CAPTURE(text);
-    const auto document = read_yaml("k: " + yaml_text(text) + "\n", "f");
-    REQUIRE(document.errors.empty());
-    CHECK(document.root.find("k")->text == text);
-    CHECK(
-        (document.root.find("k")->quoted || std::string_view{text} == "plain-1" || std::string_view{text} == "/a/b.c"));
-  }
-}
-
-TEST_CASE("the end of a key says the unit") {
-  CHECK(unit_of("horizontal_speed_m_per_s") == "m/s");
-  CHECK(unit_of("radius_m") == "m");
-  CHECK(unit_of("cell_km") == "km");
-  CHECK(unit_of("max_min") == "min");
-  CHECK(unit_of("stint_h") == "h");
-  CHECK(unit_of("lat_deg") == "°");
-  CHECK(unit_of("budget_s") == "s");
-  CHECK(unit_of("half_cycles").empty());
-}

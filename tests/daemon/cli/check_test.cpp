@@ -27,11 +27,16 @@ class ReadOnlyFiles final : public world::Files {
     std::vector<std::string> found;
     const auto star = pattern.find('*');
     for (const auto& [path, text] : files)
-      if (star == std::string::npos ? path == pattern : path.rfind(pattern.substr(0, star), 0) == 0) found.push_back(path);
+      if (star == std::string::npos ? path == pattern : path.rfind(pattern.substr(0, star), 0) == 0)
+        found.push_back(path);
     return found;
   }
-  world::FileResult<std::unique_ptr<world::Folder>> open_folder(const std::string&) override { throw std::logic_error{"open_folder"}; }
-  world::FileResult<std::unique_ptr<world::Folder>> make_folder(const std::string&, unsigned) override { throw std::logic_error{"make_folder"}; }
+  world::FileResult<std::unique_ptr<world::Folder>> open_folder(const std::string&) override {
+    throw std::logic_error{"open_folder"};
+  }
+  world::FileResult<std::unique_ptr<world::Folder>> make_folder(const std::string&, unsigned) override {
+    throw std::logic_error{"make_folder"};
+  }
   world::FileResult<world::FileStat> stat(const std::string&) override { throw std::logic_error{"stat"}; }
   world::FileResult<std::unique_ptr<world::Mapping>> map(const std::string&) override { throw std::logic_error{"map"}; }
   std::string scratch() override { throw std::logic_error{"scratch"}; }
@@ -48,8 +53,14 @@ class NoClock final : public world::Clock {
 
 class NoNet final : public world::Net {
  public:
-  Expected<std::unique_ptr<world::Listener>, world::NetError> listen_tcp(const std::string&, std::uint16_t, Accepted) override { throw std::logic_error{"listen"}; }
-  Expected<std::unique_ptr<world::Listener>, world::NetError> listen_unix(const std::string&, unsigned, Accepted) override { throw std::logic_error{"listen"}; }
+  Expected<std::unique_ptr<world::Listener>, world::NetError> listen_tcp(const std::string&, std::uint16_t,
+                                                                         Accepted) override {
+    throw std::logic_error{"listen"};
+  }
+  Expected<std::unique_ptr<world::Listener>, world::NetError> listen_unix(const std::string&, unsigned,
+                                                                          Accepted) override {
+    throw std::logic_error{"listen"};
+  }
   void connect_tcp(const std::string&, std::uint16_t, Connected) override { throw std::logic_error{"connect"}; }
   void connect_unix(const std::string&, Connected) override { throw std::logic_error{"connect"}; }
   void on_signal(int, std::function<void()>) override { throw std::logic_error{"on_signal"}; }
@@ -113,7 +124,8 @@ TEST_CASE("a right mission gives one line and exit code 0") {
 }
 
 TEST_CASE("every error of every file goes to stderr and the exit code is 1") {
-  const auto r = check({{"a.yaml", mission("leg-1", "sim01", "planning: {headigns: 18}\nlist: {slot: 100}\n")}, {"b.yaml", mission("leg-2", "sim01")}},
+  const auto r = check({{"a.yaml", mission("leg-1", "sim01", "planning: {headigns: 18}\nlist: {slot: 100}\n")},
+                        {"b.yaml", mission("leg-2", "sim01")}},
                        options({"a.yaml", "b.yaml", "c.yaml"}));
   CHECK(r.code == 1);
   CHECK(r.out == "b.yaml: mission leg-2 for glider sim01 is right\n");
@@ -141,33 +153,42 @@ TEST_CASE("--effective prints every value with its origin") {
 }
 
 TEST_CASE("--json has the contract's form, with places and keys") {
-  const auto r = check({{"a.yaml", mission("leg-1", "sim01", "planning: {headigns: 18}\n")}, {"b.yaml", mission("leg-2", "sim01")}},
-                       options({"a.yaml", "b.yaml", "c.yaml"}, false, true));
+  const auto r = check(
+      {{"a.yaml", mission("leg-1", "sim01", "planning: {headigns: 18}\n")}, {"b.yaml", mission("leg-2", "sim01")}},
+      options({"a.yaml", "b.yaml", "c.yaml"}, false, true));
   CHECK(r.code == 1);
   CHECK(r.err.empty());
   const auto document = json::parse(r.out);
   REQUIRE(document.at("files").size() == 3);
-  CHECK(document["files"][0] ==
-        json{{"file", "a.yaml"},
-             {"kind", "mission"},
-             {"valid", false},
-             {"problems", {{{"line", 6}, {"column", 12}, {"key", "planning.headigns"}, {"message", "planning.headigns: unknown key; did you mean headings?"}}}}});
-  CHECK(document["files"][1] == json{{"file", "b.yaml"}, {"kind", "mission"}, {"valid", true}, {"problems", json::array()}});
+  CHECK(document["files"][0] == json{{"file", "a.yaml"},
+                                     {"kind", "mission"},
+                                     {"valid", false},
+                                     {"problems",
+                                      {{{"line", 6},
+                                        {"column", 12},
+                                        {"key", "planning.headigns"},
+                                        {"message", "planning.headigns: unknown key; did you mean headings?"}}}}});
+  CHECK(document["files"][1] ==
+        json{{"file", "b.yaml"}, {"kind", "mission"}, {"valid", true}, {"problems", json::array()}});
   CHECK(document["files"][2]["kind"] == "unknown");
   CHECK(document["files"][2]["problems"][0]["line"] == 0);
 }
 
 TEST_CASE("--json --effective adds the values in force of right files") {
-  const auto document = json::parse(check({{"m.yaml", mission("leg-1", "sim01")}}, options({"m.yaml"}, true, true)).out);
+  const auto document =
+      json::parse(check({{"m.yaml", mission("leg-1", "sim01")}}, options({"m.yaml"}, true, true)).out);
   CHECK(document["files"][0]["effective"].get<std::string>().find("name: leg-1") != std::string::npos);
 }
 
 TEST_CASE("the kind of a file is what its schema key says") {
-  CHECK(check({{"d.yaml", kDaemon}}, options({"d.yaml"})).out == "d.yaml: daemon file for 1 gliders and 0 mission files is right\n");
+  CHECK(check({{"d.yaml", kDaemon}}, options({"d.yaml"})).out ==
+        "d.yaml: daemon file for 1 gliders and 0 mission files is right\n");
   CHECK(check({{"x.yaml", "name: a\n"}}, options({"x.yaml"})).err ==
-        "x.yaml:1:1: schema: missing; a file says with it what it is; allowed: glidehelm/mission/v1, glidehelm/daemon/v1\n");
+        "x.yaml:1:1: schema: missing; a file says with it what it is; allowed: glidehelm/mission/v1, "
+        "glidehelm/daemon/v1\n");
   CHECK(check({{"x.yaml", "schema: glidehelm/misson/v1\n"}}, options({"x.yaml"})).err ==
-        "x.yaml:1:9: schema: not one of the words; found glidehelm/misson/v1; allowed: glidehelm/mission/v1, glidehelm/daemon/v1; "
+        "x.yaml:1:9: schema: not one of the words; found glidehelm/misson/v1; allowed: glidehelm/mission/v1, "
+        "glidehelm/daemon/v1; "
         "did you mean glidehelm/mission/v1?\n");
   CHECK(check({{"x.yaml", "a: [\n"}}, options({"x.yaml"})).code == 1);
 }
@@ -182,13 +203,16 @@ TEST_CASE("a daemon file is checked with its missions, and each error stands at 
   REQUIRE(document["files"].size() == 4);  // a.yaml is not reported twice
   CHECK(document["files"][0]["valid"] == true);
   CHECK(document["files"][1]["valid"] == true);
-  CHECK(document["files"][2]["problems"][0]["message"] == "glider: no such glider in d.yaml; found sim02; did you mean sim01?");
+  CHECK(document["files"][2]["problems"][0]["message"] ==
+        "glider: no such glider in d.yaml; found sim02; did you mean sim01?");
   CHECK(document["files"][3]["problems"].size() == 1);
   CHECK(document["files"][3]["problems"][0]["key"] == "lst");
 }
 
 TEST_CASE("two missions for one glider are found across files") {
-  const auto r = check({{"d.yaml", kDaemon}, {"m/a.yaml", mission("leg-1", "sim01")}, {"m/b.yaml", mission("leg-2", "sim01")}}, options({"d.yaml"}));
+  const auto r =
+      check({{"d.yaml", kDaemon}, {"m/a.yaml", mission("leg-1", "sim01")}, {"m/b.yaml", mission("leg-2", "sim01")}},
+            options({"d.yaml"}));
   CHECK(r.code == 1);
   CHECK(r.err == "m/b.yaml:3:9: glider: two missions for glider sim01; the other is m/a.yaml\n");
 }
@@ -196,6 +220,7 @@ TEST_CASE("two missions for one glider are found across files") {
 TEST_CASE("a GeoJSON file is read beside the mission") {
   const std::string keep = "safety: {keep_in: area.geojson}\n";
   const char* area = R"({"type": "Polygon", "coordinates": [[[-16, 28], [-14, 28], [-14, 30], [-16, 28]]]})";
-  CHECK(check({{"f/m.yaml", mission("leg-1", "sim01", keep)}, {"f/area.geojson", area}}, options({"f/m.yaml"})).code == 0);
+  CHECK(check({{"f/m.yaml", mission("leg-1", "sim01", keep)}, {"f/area.geojson", area}}, options({"f/m.yaml"})).code ==
+        0);
   CHECK(check({{"f/m.yaml", mission("leg-1", "sim01", keep)}}, options({"f/m.yaml"})).code == 1);
 }

@@ -16,6 +16,7 @@ struct Job {
   world::ProcessRequest request;
   std::vector<std::string> files;
   std::string folder, name;
+  bool keep{};
   [[nodiscard]] std::string path() const { return folder + "/" + name; }
 };
 
@@ -34,7 +35,8 @@ Expected<Job, std::string> job_for(const std::vector<std::string>& patterns, con
     job.files.insert(job.files.end(), found.begin(), found.end());
   }
   if (job.files.empty()) return unexpected(std::string{"no forecast file was named"});
-  job.folder = world.files.scratch();
+  job.keep = !options.keep_in.empty();
+  job.folder = job.keep ? options.keep_in : world.files.scratch();
   job.name = "glidehelm-" + std::to_string(world.rng.next()) + ".grid";
 
   auto& request = job.request;
@@ -115,9 +117,10 @@ IngestResult take(const Job& job, const world::ProcessResult& result, world::Fil
     if (!mapping) return unexpected(mapping.error().message());
     auto view = ocean::open_grid((*mapping)->bytes());
     if (!view) return unexpected("the grid made of " + job.files.front() + " is not sound, " + view.error().message());
-    return std::make_unique<LoadedGrid>(LoadedGrid{std::move(*mapping), std::move(*view), job.files});
+    return std::make_unique<LoadedGrid>(
+        LoadedGrid{std::move(*mapping), std::move(*view), job.keep ? job.path() : "", job.files});
   }();
-  clean_up(job, files);
+  if (!taken || !job.keep) clean_up(job, files);
   return taken;
 }
 

@@ -19,6 +19,7 @@ struct IngestOptions {
     double west_deg{}, east_deg{}, south_deg{}, north_deg{};
   };
   std::optional<Area> area;  ///< part to keep; none: all
+  std::string keep_in;       ///< folder where the grid keeps its name (another process maps it too); empty: none
   Seconds deadline{120};
   std::size_t memory_at_most{};  ///< of the child, bytes; 0: no limit
 };
@@ -28,6 +29,7 @@ struct IngestOptions {
 struct LoadedGrid {
   std::unique_ptr<world::Mapping> mapping;
   ocean::GridView view;            ///< into the mapping
+  std::string path;                ///< with `keep_in`: the grid's name, for the caller to remove; else empty
   std::vector<std::string> files;  ///< what went in, in order
 };
 

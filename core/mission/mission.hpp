@@ -10,6 +10,8 @@
 #include "core/base/time.hpp"
 #include "core/chart/chart.hpp"
 #include "core/model/waypoint_list.hpp"
+#include "core/ocean/analytic.hpp"
+#include "core/ocean/time_axis.hpp"
 
 /// What a pilot wants, and the machine that carries it out.
 namespace glidehelm::mission {
@@ -17,23 +19,9 @@ namespace glidehelm::mission {
 /// `approval.mode`: who lets a file out.
 enum class Approval { manual, auto_if_safe, automatic };
 
-/// `currents.outside_time`: what a field answers before its first and after its last time.
-enum class OutsideTime { hold, cycle, forbid };
-enum class Interpolation { nearest, linear, cubic, akima };
-
-/// One analytic generator of currents (product.md 5).
-struct AnalyticSpec {
-  std::string kind;  ///< constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet, gaussians
-  GeoPoint origin;
-  Metres length_scale{1.0};
-  MetresPerSecond speed_scale{1.0};
-  std::optional<Seconds> time_scale;                   ///< default length/speed
-  std::optional<Instant> t0;                           ///< default: the start time
-  bool south{};                                        ///< the sign of the southern hemisphere (Thesis 5.4–5.5)
-  std::vector<std::pair<std::string, double>> params;  ///< by name, in the order of the file
-  std::vector<std::vector<double>> gaussians;          ///< rows of params.list
-  friend bool operator==(const AnalyticSpec&, const AnalyticSpec&) = default;
-};
+using ocean::AnalyticSpec;
+using ocean::Interpolation;
+using ocean::OutsideTime;
 
 /// `currents`: files (shell patterns) or a sum of analytic fields.
 struct Currents {

@@ -1,0 +1,110 @@
+#include "daemon/candidate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/planning/flight.hpp"
+#include "core/planning/registry.hpp"
+#include "core/vehicle/steering.hpp"
+#include "protocol/goto_list.hpp"
+
+namespace glidehelm::daemon {
+
+namespace {
+
+safety::Promise promise_of(const model::WaypointList& list, const vehicle::FlownList& flown,
+                           const planning::Problem& problem) {
+  const auto goal = planning::disc_of(problem);
+  safety::Promise promise;
+  promise.points = list.points;
+  promise.radius = list.radius;
+  promise.at_end = list.at_end;
+  promise.goal = goal.centre;
+  promise.goal_radius = goal.radius;
+  promise.next_surfacing = flown.stints.empty() ? problem.start.fix : flown.stints.front().surface;
+  promise.list_arrival_s = flown.arrival_s;
+  return promise;
+}
+
+mission::Candidate with_list(planning::Plan plan, const model::WaypointList& list,
+                             const mission::PlanningRequest& request, const planning::Problem& problem,
+                             const OceanSource& ocean, const chart::Chart& chart) {
+  const auto waters_ocean = ocean.forecast.ocean();
+  const vehicle::Waters waters{waters_ocean, chart, problem.coast_margin};
+  mission::Candidate candidate;
+  candidate.request = request.id;
+  candidate.plan = std::move(plan);
+  candidate.list = list;
+  candidate.promise = promise_of(list, vehicle::fly_list(list, planning::flight_of(problem), waters), problem);
+  candidate.file_name = protocol::goto_list_name(request.slot);
+  candidate.file_bytes = protocol::write_goto_list(list, {request.stamp, request.surfacing, candidate.plan.method});
+  candidate.horizon_s = problem.horizon_s;
+  candidate.forecast = ocean.label();
+  return candidate;
+}
+
+/// One waypoint, the goal: the glider stays there (product.md 4.9).
+mission::Candidate station(const mission::PlanningRequest& request, const planning::Problem& problem,
+                           const OceanSource& ocean, const chart::Chart& chart) {
+  const auto goal = planning::disc_of(problem);
+  model::WaypointList list;
+  list.points = {{goal.centre, model::WaypointRole::goal}};
+  list.radius = Metres{std::ceil(std::max(50.0, 0.25 * goal.radius.si()))};
+  list.at_end = model::AtEnd::loop;
+  planning::Plan plan;
+  plan.method = "station";
+  plan.status = planning::PlanStatus::reaches_goal;
+  plan.arrival_s = problem.start.fix_s;
+  return with_list(std::move(plan), list, request, problem, ocean, chart);
+}
+
+}  // namespace
+
+double horizon_of(const mission::PlanningRequest& request) {
+  const auto& p = request.problem;
+  const Seconds least = p.schedule.surfacing_time(1) + p.schedule.surface;
+  const Seconds wanted =
+      request.horizon_wanted.count() > 0 ? request.horizon_wanted : 3.0 * planning::still_water_time(p);
+  return p.start.fix_s + std::max(wanted, least).count();
+}
+
+mission::Candidate candidate_for(const planning::Plan& plan, const mission::PlanningRequest& request,
+                                 const planning::Problem& problem, const OceanSource& ocean,
+                                 const chart::Chart& chart) {
+  const auto waters_ocean = ocean.forecast.ocean();
+  const vehicle::Waters waters{waters_ocean, chart, problem.coast_margin};
+  const auto list = vehicle::list_for(plan.stints, planning::flight_of(problem), waters,
+                                      {request.max_waypoints, request.list_radius, request.at_end});
+  return with_list(plan, list, request, problem, ocean, chart);
+}
+
+std::string answer(const mission::PlanningRequest& request, const OceanSource& ocean, const chart::Chart& chart,
+                   const std::function<bool()>& expired, const std::function<void(mission::Candidate)>& found,
+                   std::uint64_t work) {
+  auto problem = request.problem;
+  problem.horizon_s = horizon_of(request);
+  std::uint64_t number = 0;
+  const auto give = [&](mission::Candidate candidate) {
+    candidate.number = ++number;
+    found(std::move(candidate));
+  };
+  if (request.purpose == mission::PlanningRequest::Purpose::station) {
+    give(station(request, problem, ocean, chart));
+    return "";
+  }
+  const auto planner = planning::planner_named(request.method);
+  if (!planner) return "there is no method " + request.method;
+  const std::array<ocean::Ocean, 1> members{ocean.forecast.ocean()};
+  std::string last_method;
+  const auto plan = planner->plan(problem, members, chart, {work, expired}, [&](const planning::Plan& p) {
+    if (p.stints.empty() || p.method == last_method) return;  // the final call repeats the best plan
+    last_method = p.method;
+    give(candidate_for(p, request, problem, ocean, chart));
+  });
+  if (!plan) return plan.error().message;
+  if (number == 0) return plan->reason.empty() ? "the plan has no stint" : plan->reason;
+  return "";
+}
+
+}  // namespace glidehelm::daemon

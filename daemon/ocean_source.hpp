@@ -1,0 +1,55 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/mission/mission.hpp"
+#include "core/ocean/forecast.hpp"
+#include "daemon/verify/dossier_json.hpp"
+#include "daemon/world/world.hpp"
+
+namespace glidehelm::daemon {
+
+/// A forecast as planners take it, and as the verifier finds it again. Immutable; a running plan keeps the one it began with.
+struct OceanSource {
+  ocean::Forecast forecast;
+  std::optional<verify::InputFile> grid;  ///< the flat grid, by name and identity
+  ocean::GriddedOptions options;
+  std::vector<ocean::AnalyticSpec> analytic;
+  Instant analytic_start;
+  ocean::Coverage analytic_box;
+  std::vector<std::string> files;  ///< published files that went in
+  /// Removes the grid's file when the last user lets go; empty when nothing is to be removed.
+  std::shared_ptr<const void> grid_file;
+
+  /// "rtofs 2024-10-28T00:00:00Z (sha256 1a2b3c4d5e6f)": provenance in one line.
+  [[nodiscard]] std::string label() const;
+};
+using OceanResult = Expected<std::shared_ptr<const OceanSource>, std::string>;
+
+/// What a mission's `currents` says, made ready for its vehicle and schedule. `start` is t0 of analytic fields that name none and the
+/// middle of their box together with the goal. `grids`: the folder that keeps the flat grid. `has_coast`: without one the model's mask is land.
+struct OceanOrder {
+  mission::Mission mission;
+  std::string grids;
+  bool has_coast{};
+  Instant start;
+  std::optional<GeoPoint> from;
+};
+/// Blocks: for the command line.
+OceanResult load_ocean(const OceanOrder& order, world::World& world);
+/// `then` is called from the loop.
+void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanResult)> then);
+
+/// The chart of a mission: coast file and areas.
+struct ChartSource {
+  chart::Chart chart;
+  std::optional<verify::InputFile> coast;
+  std::vector<chart::Area> keep_in, keep_out;
+};
+Expected<std::shared_ptr<const ChartSource>, std::string> load_chart(const mission::Mission& mission,
+                                                                     world::Files& files);
+
+}  // namespace glidehelm::daemon

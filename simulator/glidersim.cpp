@@ -22,7 +22,7 @@ using namespace glidehelm;
 using namespace glidehelm::simulator;
 
 constexpr int kDone = 0, kNegative = 1, kUsage = 2, kNoDaemon = 3;
-constexpr std::size_t kLargestCoast = 256U << 20;
+constexpr std::size_t kLargestCoast = chart::Coast::kLargestFile;
 
 struct RunOptions {
   std::string scenario, log;
@@ -46,9 +46,9 @@ Expected<chart::Chart, std::string> chart_from(const std::string& path, world::F
   if (path.empty()) return chart::Chart{};
   const auto bytes = files.read(path, kLargestCoast);
   if (!bytes) return unexpected(bytes.error().message());
-  auto coast = chart::Coast::read(*bytes);
+  auto coast = chart::Coast::parse(*bytes);
   if (!coast) return unexpected(path + ": " + coast.error().message());
-  return chart::Chart{chart::ChartSources{std::make_shared<const chart::Coast>(std::move(*coast)), {}, {}}};
+  return chart::Chart{chart::ChartSources{std::move(*coast), {}, {}}};
 }
 
 /// stdout, and the log file when one is wanted (written whole at the end: it is a record, not a stream).

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/utc.hpp"
@@ -13,7 +14,8 @@ std::string when(double t_s) { return utc_text(instant_at(t_s)); }
 
 std::string current_text(const std::optional<Current>& c) {
   if (!c) return "none";
-  return fmt::format("{:+.3f},{:+.3f} m/s", c->east.si(), c->north.si());
+  const auto rounded = [](double v) { return std::round(v * 1e3) / 1e3 + 0.0; };  // never a zero with a minus
+  return fmt::format("{:+.3f},{:+.3f} m/s", rounded(c->east.si()), rounded(c->north.si()));
 }
 
 std::string list_text(const CallOutcome& call) {

@@ -213,7 +213,20 @@ struct RealNet::Parts {
   explicit Parts(asio::io_context& shared) : context{shared}, resolver{shared} {}
   asio::io_context& context;
   tcp::resolver resolver;
-  std::list<asio::signal_set> signals;
+  struct Signal {
+    Signal(asio::io_context& loop, int number, std::function<void()> handler) : set{loop, number}, then{std::move(handler)} {}
+    asio::signal_set set;
+    std::function<void()> then;
+  };
+  /// Waits again after each signal; the list keeps the address, and a loop that ends lets go of the handler.
+  static void wait(Signal& signal) {
+    signal.set.async_wait([&signal](const error_code& error, int) {
+      if (error) return;
+      signal.then();
+      wait(signal);
+    });
+  }
+  std::list<Signal> signals;
 };
 
 RealNet::RealNet(RealLoop& loop) : parts_{std::make_unique<Parts>(loop.context)} {}
@@ -298,20 +311,8 @@ void RealNet::connect_unix(const std::string& path, Connected connected) {
 }
 
 void RealNet::on_signal(int number, std::function<void()> then) {
-  parts_->signals.emplace_back(parts_->context, number);
-  auto& set = parts_->signals.back();
-  auto wait = std::make_shared<std::function<void()>>();
-  *wait = [&set, wait, then = std::move(then)] {
-    set.async_wait([wait, then](const error_code& error, int) {
-      if (error) {
-        *wait = nullptr;  // ends the circle that keeps itself alive
-        return;
-      }
-      then();
-      (*wait)();
-    });
-  };
-  (*wait)();
+  parts_->signals.emplace_back(parts_->context, number, std::move(then));
+  Parts::wait(parts_->signals.back());
 }
 
 void RealNet::post(std::function<void()> work) { asio::post(parts_->context, std::move(work)); }

@@ -672,7 +672,9 @@ void Pilot::take_over(const MissionChanged& change) {
 /// After a crash: what was under way is settled. A plan is never finished from the journal; a new one is made while the
 /// window is open (trust.md 6.2).
 void Pilot::on(const Restarted& e) {
-  if (!last_ || stage_ == Stage::idle || stage_ == Stage::dived) return;
+  if (!last_ || stage_ == Stage::idle) return;
+  if (stage_ == Stage::dived || stage_ == Stage::queued || stage_ == Stage::kept || stage_ == Stage::stood_down) expect_next();
+  if (stage_ == Stage::dived) return;
   // Ticks of before the restart may be of another boot: the deadline is rebuilt from UTC.
   const Seconds cap = mission_ ? mission_->window_max : Seconds{900};
   first_heard_ = later(now_.tick, -between(last_->heard, now_.utc));

@@ -77,6 +77,12 @@ inline void read(const json& j, std::string& text) {
     text += static_cast<char>(hex_digit(hex[i]) * 16 + hex_digit(hex[i + 1]));
 }
 
+inline json write(std::uint64_t value) { return value; }
+inline void read(const json& j, std::uint64_t& value) {
+  if (!j.is_number_unsigned()) throw std::runtime_error("not a whole number");
+  value = j.get<std::uint64_t>();
+}
+
 inline json write(bool value) { return value; }
 inline void read(const json& j, bool& value) { value = j.get<bool>(); }
 

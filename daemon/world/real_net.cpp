@@ -214,7 +214,8 @@ struct RealNet::Parts {
   asio::io_context& context;
   tcp::resolver resolver;
   struct Signal {
-    Signal(asio::io_context& loop, int number, std::function<void()> handler) : set{loop, number}, then{std::move(handler)} {}
+    Signal(asio::io_context& loop, int number, std::function<void()> handler)
+        : set{loop, number}, then{std::move(handler)} {}
     asio::signal_set set;
     std::function<void()> then;
   };

@@ -121,11 +121,15 @@ struct Query {
 struct Source {
   ocean::GriddedField field, full;
   std::vector<double> times_s;
+  double least_depth_m{-100};  ///< the water must reach deeper than this for the mean to exist
 };
 
 ordered_json answer(const Source& source, const Query& query) {
   const Depth depth{Metres{query.depth_m.value_or(-100.0)}};
-  const auto sample = source.field.sample(query.at, depth, query.time_s);
+  auto sample = source.field.sample(query.at, depth, query.time_s);
+  // A mean borrowed from a neighbouring column would pass for one of this column, whose water ends above it.
+  if (sample && !source.full.sample(query.at, Depth{Metres{source.least_depth_m}}, query.time_s))
+    sample = unexpected(ocean::NoCurrent::no_data);
   if (sample)
     return {{"east_m_per_s", sample->current.east.si()},
             {"north_m_per_s", sample->current.north.si()},
@@ -218,7 +222,8 @@ Source source_of(const FieldSampleOptions& options, const ocean::GridView& view)
   if (!options.depth_mean || view.axes.depths_m.size() == 1) return {full, full, view.axes.times_s};
   const auto profile =
       ocean::DiveProfile::between(Metres{options.depth_mean->first}, Metres{options.depth_mean->second});
-  return {ocean::GriddedField{ocean::depth_average(view, profile), gridded}, full, view.axes.times_s};
+  return {ocean::GriddedField{ocean::depth_average(view, profile), gridded}, full, view.axes.times_s,
+          options.depth_mean->first};
 }
 
 void print_answer(const ordered_json& json, std::ostream& out) {

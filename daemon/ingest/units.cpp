@@ -27,9 +27,10 @@ using Converter = std::unique_ptr<cv_converter, FreeConverter>;
 
 const char* kEpoch = "seconds since 1970-01-01 00:00:00";
 
-/// What people write for knots and UDUNITS does not know, or knows as something else.
+/// What people write and UDUNITS does not know, or knows as something else.
 std::string known_spelling(const std::string& unit) {
   const std::string plain = lower(trimmed(unit));
+  if (plain == "deg") return "degree";
   for (const char* knots : {"kn", "kts", "knots", "knot", "kt"})
     if (plain == knots) return "knot";
   return std::string{trimmed(unit)};

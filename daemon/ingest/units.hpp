@@ -23,7 +23,7 @@ class Units {
   Units& operator=(Units&&) noexcept;
 
   /// Conversion of `unit` to `target` (both as UDUNITS writes them). "kn", "kts" and "knots" are taken for knots, which
-  /// UDUNITS calls kt. A unit that cannot be read, or is of another kind ("degC" where "m/s" is needed), is a fault.
+  /// UDUNITS calls kt, and "deg" for degrees. A unit that cannot be read, or is of another kind ("degC" where "m/s" is needed), is a fault.
   [[nodiscard]] Result<Scaling> scaling(const std::string& unit, const std::string& target) const;
 
   /// Conversion of "days since 1950-01-01 00:00:00" and its like to epoch seconds. `calendar` as CF names it: empty,

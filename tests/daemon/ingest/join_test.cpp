@@ -1,0 +1,92 @@
+#include "daemon/ingest/join.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/support/fields.hpp"
+
+using namespace glidehelm;
+using namespace glidehelm::ingest;
+
+namespace {
+
+constexpr double kUnnamed = std::numeric_limits<double>::quiet_NaN();
+
+/// A part whose current is `mark` everywhere, at the given hours.
+Part part(const std::string& file, std::vector<double> hours, double mark, double reference_h = kUnnamed) {
+  for (double& h : hours) h *= 3600;
+  Part p{file,
+         test::make_grid({std::move(hours), {0.0}, {0, 1}, {0, 1}, true, false}, [&](double, double, double, double) {
+           return std::pair{mark, 0.0};
+         })};
+  p.grid.facts.reference_s = reference_h * 3600;
+  p.grid.facts.cycle = file;
+  p.grid.facts.sources = {{file, Sha256::of(file)}};
+  return p;
+}
+/// "hour:mark" of every time, in order.
+std::string story(const Result<ocean::Grid>& grid) {
+  REQUIRE(grid);
+  std::string text;
+  for (std::size_t t = 0; t < grid->axes.times_s.size(); ++t)
+    text += (t > 0 ? " " : "") + std::to_string(static_cast<int>(grid->axes.times_s[t] / 3600)) + ":" +
+            std::to_string(static_cast<int>(std::lround(10 * grid->values[8 * t])));
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("files that follow each other are joined in time, whatever their order") {
+  CHECK(story(join({part("b", {24, 48}, 0.2), part("a", {0, 12}, 0.1), part("c", {72}, 0.3)})) ==
+        "0:1 12:1 24:2 48:2 72:3");
+}
+
+TEST_CASE("the newest cycle wins where cycles overlap, by its reference time") {
+  // b is the newer run although it begins later only by its named reference time; nothing of a stays between its ends.
+  CHECK(story(join({part("b", {0, 6, 12}, 0.2, 3), part("a", {-3, 3, 9, 15, 21}, 0.1, 1)})) ==
+        "-3:1 0:2 6:2 12:2 15:1 21:1");
+}
+
+TEST_CASE("without reference times the later first time is newer, then the later argument") {
+  CHECK(story(join({part("b", {6, 12, 18}, 0.2), part("a", {0, 6, 12, 24}, 0.1)})) == "0:1 6:2 12:2 18:2 24:1");
+  CHECK(story(join({part("a", {0, 6}, 0.1), part("b", {0, 6}, 0.2)})) == "0:2 6:2");
+  CHECK(story(join({part("b", {0, 6}, 0.2), part("a", {0, 6}, 0.1)})) == "0:1 6:1");
+  // One file that names no reference time makes those of the others count for nothing.
+  CHECK(story(join({part("a", {0, 6}, 0.1, 99), part("b", {3, 9}, 0.2)})) == "0:1 3:2 9:2");
+}
+
+TEST_CASE("files of one cycle interleave, and equal times go to the later argument") {
+  CHECK(story(join({part("a", {0, 6, 12}, 0.1, 0), part("b", {0, 3, 9}, 0.2, 0)})) == "0:2 3:2 6:1 9:2 12:1");
+}
+
+TEST_CASE("the facts are those of the newest, the sources those of all in order of the arguments") {
+  auto a = part("x/a.nc", {0}, 0.1), b = part("x/b.nc", {6}, 0.2), c = part("x/c.nc", {12}, 0.3);
+  a.grid.facts.warnings = {"u has no unit; taken as m/s"};
+  b.grid.facts.warnings = {"u has no unit; taken as m/s", "only here"};
+  const auto grid = join({c, a, b});
+  REQUIRE(grid);
+  CHECK(grid->facts.cycle == "x/c.nc");
+  CHECK(grid->facts.warnings == std::vector<std::string>{"2 files: u has no unit; taken as m/s", "b.nc: only here"});
+  REQUIRE(grid->facts.sources.size() == 3);
+  CHECK(grid->facts.sources[0].name == "x/c.nc");
+  CHECK(grid->facts.sources[2].name == "x/b.nc");
+}
+
+TEST_CASE("files on different grids are refused with the first difference") {
+  auto other = part("b", {6}, 0.2);
+  other.grid.axes.lons_deg[1] = 1.001;
+  CHECK(join({part("a", {0}, 0.1), other}).error().what ==
+        "b: its longitudes differ from those of a (index 1: 1.001 against 1); files that are joined lie on the same "
+        "grid");
+  other.grid.axes.lats_deg = {0, 1, 2};
+  CHECK(join({part("a", {0}, 0.1), other}).error().what ==
+        "b: its latitudes differ from those of a (3 against 2); files that are joined lie on the same grid");
+  auto timeless = part("c", {0}, 0.2);
+  timeless.grid.axes.has_time = false;
+  CHECK(join({part("a", {0}, 0.1), timeless}).error().what ==
+        "c: it has no time axis; several files are joined by their times");
+  // The rounding of a stored axis is no difference.
+  auto near = part("b", {6}, 0.2);
+  near.grid.axes.lats_deg[1] += 1e-6;
+  CHECK(join({part("a", {0}, 0.1), near}));
+}

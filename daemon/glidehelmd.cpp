@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "daemon/service.hpp"
+#include "daemon/world/program_version.hpp"
 #include "daemon/world/real.hpp"
 
 namespace {
@@ -44,7 +45,7 @@ int main(int argc, char** argv) {
   bool check = false;
   app.add_option("--config", file, "Daemon file (schema glidehelm/daemon/v1)")->capture_default_str();
   app.add_flag("--check", check, "Read the daemon file and all missions, print every error, and end");
-  app.set_version_flag("--version", std::string{"glidehelmd "} + GLIDEHELM_VERSION);
+  app.set_version_flag("--version", std::string{"glidehelmd "} + glidehelm::world::program_version());
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

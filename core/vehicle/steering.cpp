@@ -353,7 +353,8 @@ Dive::Outcome fly_stint(const Flight& flight, const Waters& waters, const State&
   const auto aim = aim_point(from.at(), *wanted, flight.glider, c, held, radius);
   std::vector<GeoPoint> points{aim.at};
   if (!aim.ends_list) {
-    if (ideal.arrival_s || !next) {
+    // With correction 0 the file holds the first aim point and then the goal: aim points there turn later dives back.
+    if (ideal.arrival_s || !next || flight.glider.current_correction == 0) {
       points.push_back(flight.goal.centre);
     } else {
       points.push_back(aim_point(ideal.end.at(), *next, flight.glider, ideal.mean, seconds, radius).at);

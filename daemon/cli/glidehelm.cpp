@@ -1,0 +1,185 @@
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <functional>
+#include <iostream>
+
+#include "core/base/text.hpp"
+#include "core/base/utc.hpp"
+#include "daemon/cli/check.hpp"
+#include "daemon/cli/coast.hpp"
+#include "daemon/cli/field.hpp"
+#include "daemon/cli/mafile.hpp"
+#include "daemon/cli/plan.hpp"
+#include "daemon/cli/replay.hpp"
+#include "daemon/world/program_version.hpp"
+#include "daemon/world/real.hpp"
+
+namespace {
+
+using namespace glidehelm;
+
+constexpr const char* kHelp =
+    "Planning and looking for pilots of underwater gliders. Every verb that reads takes --json.\n"
+    "Exit codes: 0 done, 1 a finding or a negative answer, 2 usage, 4 refused by safety, 5 deadline missed.";
+
+/// A verb's run, chosen by the parser.
+using Action = std::function<int(world::World&)>;
+
+/// "28.2,-15.2": CLI11 would take "-15.2" of two words for an option, so pairs are one word.
+std::pair<double, double> pair_from(const std::string& text, const char* what) {
+  const auto comma = text.find(',');
+  const auto first = number_from(trimmed(std::string_view{text}.substr(0, comma)));
+  const auto second =
+      comma == std::string::npos ? std::nullopt : number_from(trimmed(std::string_view{text}.substr(comma + 1)));
+  if (!first || !second)
+    throw CLI::ValidationError{what, "'" + text + "' is not two numbers with a comma between, as 28.2,-15.2"};
+  return {*first, *second};
+}
+
+Instant time_from(const std::string& text, const char* what) {
+  const auto t = utc_from_text(text);
+  if (!t) throw CLI::ValidationError{what, "'" + text + "' is not a UTC time, as 2026-11-25T10:20:30Z"};
+  return *t;
+}
+
+void add_check(CLI::App& app, Action& action) {
+  auto o = std::make_shared<cli::CheckOptions>();
+  auto* verb =
+      app.add_subcommand("check", "Every error of mission and daemon files, with line, column and nearest key");
+  verb->add_option("FILE", o->files, "Mission or daemon files, told apart by `schema:`")->required();
+  verb->add_flag("--effective", o->effective, "Print the values in force and where each comes from");
+  verb->add_flag("--json", o->json, "One JSON document on standard output");
+  verb->callback(
+      [o, &action] { action = [o](world::World& w) { return cli::run_check(*o, w, std::cout, std::cerr); }; });
+}
+
+void add_plan(CLI::App& app, Action& action) {
+  struct Words {
+    cli::PlanOptions options;
+    std::string from, at, water;
+    double budget{};
+  };
+  auto o = std::make_shared<Words>();
+  auto* verb = app.add_subcommand("plan", "Plan a mission once, offline");
+  verb->add_option("MISSION", o->options.mission, "Mission file (schema glidehelm/mission/v1)")->required();
+  verb->add_option("--method", o->options.method, "direct, cts-astar or best (default: the mission's)");
+  auto* from = verb->add_option("--from", o->from, "LAT,LON of the fix, degrees (default: the mission's start)");
+  auto* at = verb->add_option("--at", o->at, "UTC of the fix (default: the mission's start time, else now)");
+  auto* water = verb->add_option("--water", o->water, "E,N: measured current that the glider believes, m/s");
+  auto* seed = verb->add_option("--seed", "For methods that draw");
+  auto* budget =
+      verb->add_option("--budget", o->budget,
+                       "Seconds; without it every stage runs to its work limit and the answer is deterministic")
+          ->check(CLI::PositiveNumber);
+  verb->add_option("--goto", o->options.goto_file, "Write the verified goto list to this new file");
+  verb->add_flag("--json", o->options.json, "One JSON document on standard output (schema glidehelm/plan/v1)");
+  verb->callback([=, &action] {
+    if (*from) o->options.from = pair_from(o->from, "--from");
+    if (*at) o->options.at = time_from(o->at, "--at");
+    if (*water) o->options.water = pair_from(o->water, "--water");
+    if (*seed) o->options.seed = seed->as<std::uint64_t>();
+    if (*budget) o->options.budget = Seconds{o->budget};
+    action = [o](world::World& w) { return cli::run_plan(o->options, w, std::cout, std::cerr); };
+  });
+}
+
+void add_replay(CLI::App& app, Action& action) {
+  auto o = std::make_shared<cli::ReplayOptions>();
+  auto* verb = app.add_subcommand("replay", "Every surfacing of dialog logs, and why a fix is refused");
+  verb->add_option("LOG", o->logs, "Dialog logs of a dockserver or terminal")->required();
+  verb->add_option("--glider", o->glider, "Only this glider's");
+  verb->add_flag("--json", o->json, "One JSON document on standard output");
+  verb->callback(
+      [o, &action] { action = [o](world::World& w) { return cli::run_replay(*o, w.files, std::cout, std::cerr); }; });
+}
+
+void add_mafile(CLI::App& app, Action& action) {
+  struct Words {
+    cli::MafileOptions options;
+    std::string near;
+  };
+  auto o = std::make_shared<Words>();
+  auto* verb = app.add_subcommand("mafile", "Read a mafile: b_args, waypoints, problems with line and column");
+  verb->add_option("FILE", o->options.file, "A goto_list, surface, yo, sample or other mafile")->required();
+  auto* near =
+      verb->add_option("--near", o->near, "LAT,LON of the glider, degrees: finds decimal degrees taken for DDMM");
+  verb->add_flag("--strict", o->options.strict, "As strict as for our own files");
+  verb->add_flag("--json", o->options.json, "One JSON document on standard output");
+  verb->callback([=, &action] {
+    if (*near) {
+      const auto [lat, lon] = pair_from(o->near, "--near");
+      const auto point = GeoPoint::from_degrees(lat, lon);
+      if (!point) throw CLI::ValidationError{"--near", point.error().message()};
+      o->options.near = *point;
+    }
+    action = [o](world::World& w) { return cli::run_mafile(o->options, w.files, std::cout, std::cerr); };
+  });
+}
+
+void add_field(CLI::App& app, Action& action) {
+  auto* field = app.add_subcommand("field", "What a forecast is, and what it says at a place");
+  field->require_subcommand(1);
+  auto info = std::make_shared<cli::FieldInfoOptions>();
+  auto* verb = field->add_subcommand("info", "Variables recognised and why, grid, times, depths, speeds, warnings");
+  verb->add_option("FILE", info->files, "NetCDF files or shell patterns; several join into one field")->required();
+  verb->add_flag("--json", info->json, "One JSON document on standard output");
+  verb->callback([info, &action] {
+    action = [info](world::World& w) { return cli::run_field_info(*info, w, std::cout, std::cerr); };
+  });
+
+  struct Words {
+    cli::FieldSampleOptions options;
+    double lat{}, lon{}, depth{};
+    std::string time, mean;
+  };
+  auto o = std::make_shared<Words>();
+  auto* sample = field->add_subcommand("sample", "The current at a place, or at every place of a CSV");
+  sample->add_option("FILE", o->options.files, "NetCDF files or shell patterns")->required();
+  auto* lat = sample->add_option("--lat", o->lat, "Latitude, degrees");
+  auto* lon = sample->add_option("--lon", o->lon, "Longitude, degrees");
+  auto* time = sample->add_option("--time", o->time, "UTC");
+  auto* depth = sample->add_option("--depth", o->depth, "Metres below the surface (default: the shallowest level)");
+  auto* mean = sample->add_option("--depth-mean", o->mean, "MIN,MAX: mean between two depths, metres");
+  sample->add_option("--points", o->options.points, "CSV of lat,lon,time[,depth]");
+  sample->add_flag("--json", o->options.json, "One JSON document on standard output");
+  sample->callback([=, &action] {
+    if (*lat) o->options.lat_deg = o->lat;
+    if (*lon) o->options.lon_deg = o->lon;
+    if (*time) o->options.time = time_from(o->time, "--time");
+    if (*depth) o->options.depth_m = o->depth;
+    if (*mean) o->options.depth_mean = pair_from(o->mean, "--depth-mean");
+    action = [o](world::World& w) { return cli::run_field_sample(o->options, w, std::cout, std::cerr); };
+  });
+}
+
+void add_coast(CLI::App& app, Action& action) {
+  auto o = std::make_shared<cli::CoastOptions>();
+  auto* verb = app.add_subcommand("coast", "Cut a coastline from GSHHG full resolution (Debian: gmt, gmt-gshhg-full)");
+  verb->add_option("--area", o->area, "W/E/S/N in degrees, e.g. -19/-12/26.5/30")->required();
+  verb->add_option("-o,--output", o->output, "The .coast file")->required();
+  verb->callback(
+      [o, &action] { action = [o](world::World& w) { return cli::run_coast(*o, w, std::cout, std::cerr); }; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{kHelp, "glidehelm"};
+  app.set_version_flag("--version", std::string{"glidehelm "} + world::program_version());
+  app.require_subcommand(1);
+  Action action;
+  add_check(app, action);
+  add_plan(app, action);
+  add_replay(app, action);
+  add_mafile(app, action);
+  add_field(app, action);
+  add_coast(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  world::RealWorld real;
+  auto w = real.world();
+  return action(w);
+}

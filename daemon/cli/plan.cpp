@@ -1,0 +1,334 @@
+#include "daemon/cli/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "config/mission.hpp"
+#include "core/base/utc.hpp"
+#include "core/planning/flight.hpp"
+#include "core/planning/registry.hpp"
+#include "daemon/candidate.hpp"
+#include "daemon/verify/judge_request.hpp"
+#include "daemon/world/program_version.hpp"
+
+namespace glidehelm::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Everything that one plan depends on, resolved.
+struct Case {
+  mission::Mission mission;
+  std::string mission_sha256;
+  std::shared_ptr<const daemon::ChartSource> chart;
+  std::shared_ptr<const daemon::OceanSource> ocean;
+  mission::PlanningRequest request;
+};
+
+/// A failure with its exit code.
+struct Trouble {
+  int code{};
+  std::string message;
+};
+
+Json place(GeoPoint p) { return {{"lat_deg", p.lat.degrees()}, {"lon_deg", p.lon.degrees()}}; }
+Json place(GeoPoint p, double t_s) {
+  Json j = place(p);
+  j["time"] = utc_text(instant_at(t_s), true);
+  return j;
+}
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, world::Files& files, std::string& sha256) {
+  const auto bytes = files.read(options.mission, std::size_t{1} << 20);
+  if (!bytes) return unexpected(Trouble{2, bytes.error().message()});
+  sha256 = Sha256::of(std::string_view{*bytes}).hex();
+  const auto load = [&files](const std::string& path) -> Expected<std::string, config::Unreadable> {
+    auto text = files.read(path, std::size_t{16} << 20);
+    if (!text) return unexpected(config::Unreadable{text.error().message()});
+    return std::move(text).value();
+  };
+  auto mission = config::read_mission(*bytes, options.mission, load);
+  if (mission) return std::move(mission).value();
+  std::string all;
+  for (const auto& error : mission.error()) all += (all.empty() ? "" : "\n") + error.message();
+  return unexpected(Trouble{2, all});
+}
+
+Expected<Case, Trouble> prepare(const PlanOptions& options, world::World& world, std::ostream& err) {
+  Case c;
+  auto mission = read_mission(options, world.files, c.mission_sha256);
+  if (!mission) return unexpected(mission.error());
+  c.mission = std::move(mission).value();
+  if (!options.method.empty()) c.mission.method = options.method;
+  if (!planning::planner_named(c.mission.method)) {
+    std::string known;
+    for (const auto& name : planning::method_names()) known += (known.empty() ? "" : ", ") + name;
+    return unexpected(
+        Trouble{2, "--method " + c.mission.method + ": unknown or not available in this version; available: " + known});
+  }
+  if (options.from) {
+    const auto from = GeoPoint::from_degrees(options.from->first, options.from->second);
+    if (!from)
+      return unexpected(Trouble{2, "--from: " + from.error().message() +
+                                       (std::abs(options.from->first) > 90 ? " (latitude comes first)" : "")});
+    c.mission.start = *from;
+  }
+  if (!c.mission.start)
+    return unexpected(Trouble{2, "no start: give --from LAT,LON or start: {lat_deg: , lon_deg: } in the mission"});
+  auto chart = daemon::load_chart(c.mission, world.files);
+  if (!chart) return unexpected(Trouble{1, chart.error()});
+  c.chart = std::move(chart).value();
+  if (!c.chart->chart.has_coast())
+    err << "warning: no coastline (safety.coast): land is what the forecast's mask says\n";
+  auto at = options.at ? options.at : c.mission.start_time;
+  auto ocean = daemon::load_ocean(
+      {c.mission, world.files.scratch(), c.chart->chart.has_coast(), at.value_or(world.clock.utc()), c.mission.start},
+      world);
+  if (!ocean) return unexpected(Trouble{1, ocean.error()});
+  c.ocean = std::move(ocean).value();
+  const auto& facts = c.ocean->forecast.facts();
+  for (const auto& warning : facts.warnings) err << "warning: " << warning << "\n";
+  if (!at) {
+    at = world.clock.utc();
+    if (facts.has_time && (epoch_seconds(*at) > facts.last_s || epoch_seconds(*at) < facts.first_s)) {
+      at = instant_at(facts.first_s);
+      err << "note: no --at given and the forecast does not reach to now: planning from its first time "
+          << utc_text(*at) << "\n";
+    }
+  }
+  if (facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s) &&
+      c.mission.currents.outside_time == ocean::OutsideTime::forbid)
+    return unexpected(Trouble{
+        1, fmt::format("the start time {} lies outside the forecast, which reaches from {} to {}", utc_text(*at),
+                       utc_text(instant_at(facts.first_s)), utc_text(instant_at(facts.last_s)))});
+  if (facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s))
+    err << "warning: the start time " << utc_text(*at) << " lies outside the forecast, which reaches from "
+        << utc_text(instant_at(facts.first_s)) << " to " << utc_text(instant_at(facts.last_s)) << "\n";
+  auto& r = c.request;
+  const auto& m = c.mission;
+  r.id = 1;
+  r.surfacing = m.glider + "/" + utc_text(*at);
+  r.problem.start = {*m.start, epoch_seconds(*at)};
+  r.problem.goal = planning::PointGoal{m.goal, m.goal_radius};
+  r.problem.glider = {m.glider,     m.horizontal_speed, m.horizontal_speed,  m.glide_angle,
+                      m.dive_depth, m.climb_to,         m.current_correction};
+  r.problem.schedule = {m.stint, m.first_stint, m.surface, m.surface};
+  if (options.water)
+    r.problem.believed_current = Current{MetresPerSecond{options.water->first}, MetresPerSecond{options.water->second}};
+  r.problem.coast_margin = m.min_distance_to_coast;
+  r.problem.headings = m.headings;
+  r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
+  r.problem.seed = options.seed.value_or(m.seed);
+  r.method = m.method;
+  r.slot = m.slot;
+  r.max_waypoints = m.max_waypoints;
+  r.list_radius = m.list_radius;
+  r.at_end = m.at_end;
+  r.stamp = *at;
+  r.horizon_wanted = m.horizon.value_or(Seconds{0});
+  r.problem.horizon_s = daemon::horizon_of(r);
+  return c;
+}
+
+/// A start that is wrong, but right with latitude and longitude swapped and near the goal.
+std::string swap_hint(const Case& c) {
+  const auto& p = *c.mission.start;
+  const auto swapped = GeoPoint::from_degrees(p.lon.degrees(), p.lat.degrees());
+  if (!swapped || c.chart->chart.is_land(*swapped) || distance(*swapped, c.mission.goal) > distance(p, c.mission.goal))
+    return "";
+  return fmt::format(". Swapped it would be {:.4f},{:.4f}, {:.0f} km from the goal: latitude comes first",
+                     swapped->lat.degrees(), swapped->lon.degrees(), distance(*swapped, c.mission.goal).si() / 1000);
+}
+
+Json inputs_json(const Case& c) {
+  const auto& p = c.request.problem;
+  const auto& goal = std::get<planning::PointGoal>(p.goal);
+  return {{"horizontal_speed_m_per_s", p.glider.horizontal_speed.si()},
+          {"believed_speed_m_per_s", p.glider.believed_speed.si()},
+          {"current_correction", p.glider.current_correction},
+          {"stint_s", p.schedule.stint.count()},
+          {"first_stint_s", p.schedule.first_stint.count()},
+          {"surface_s", p.schedule.surface.count()},
+          {"time_to_dive_s", p.schedule.time_to_dive.count()},
+          {"goal",
+           {{"kind", "point"},
+            {"lat_deg", goal.at.lat.degrees()},
+            {"lon_deg", goal.at.lon.degrees()},
+            {"radius_m", goal.radius.si()}}},
+          {"outside_time", c.mission.currents.outside_time == ocean::OutsideTime::hold    ? "hold"
+                           : c.mission.currents.outside_time == ocean::OutsideTime::cycle ? "cycle"
+                                                                                          : "forbid"},
+          {"horizon_s", p.horizon_s - p.start.fix_s},
+          {"seed", p.seed},
+          {"headings", p.headings},
+          {"cell_m", p.cell.si()}};
+}
+
+Json plan_json(const Case& c, const std::optional<mission::Candidate>& found, const std::string& problem,
+               double wall_s) {
+  const auto& p = c.request.problem;
+  Json j{{"schema", "glidehelm/plan/v1"}};
+  const planning::Plan nothing;
+  const auto& plan = found ? found->plan : nothing;
+  j["method"] = found ? plan.method : c.request.method;
+  j["status"] = !found ? "no_plan" : plan.reaches_goal() ? "reaches_goal" : "closest_approach";
+  j["reason"] = found ? plan.reason : problem;
+  j["inputs"] = inputs_json(c);
+  j["start"] = place(p.start.fix, p.start.fix_s);
+  const bool arrives = found && plan.reaches_goal();
+  j["travel_time_s"] = arrives ? Json(plan.arrival_s - p.start.fix_s) : Json(nullptr);
+  j["arrival"] = arrives ? Json(utc_text(instant_at(plan.arrival_s), true)) : Json(nullptr);
+  j["remaining_distance_m"] = found ? plan.remaining.si() : distance(p.start.fix, planning::disc_of(p).centre).si();
+  for (const char* name : {"lower_bound_s", "lower_bound_error_s", "gap"}) j[name] = nullptr;
+  j["stints"] = Json::array();
+  for (const auto& s : plan.stints)
+    j["stints"].push_back({{"dive", place(s.dive, s.dive_s)},
+                           {"surface", place(s.surface, s.surface_s)},
+                           {"heading_deg", s.heading.degrees()},
+                           {"dac", {{"east_m_per_s", s.dac.east.si()}, {"north_m_per_s", s.dac.north.si()}}},
+                           {"arrives", s.arrives},
+                           {"steering_error_m", number_or_null(s.steering_error.si())}});
+  j["waypoints"] = Json::array();
+  if (found)
+    for (const auto& w : found->list.points) {
+      Json point = place(w.at);
+      point["role"] = w.role == model::WaypointRole::aim ? "aim" : "goal";
+      j["waypoints"].push_back(std::move(point));
+    }
+  j["list"] = {{"radius_m", found ? Json(found->list.radius.si()) : Json(nullptr)},
+               {"initial_wpt", 0},
+               {"num_legs_to_run", c.request.at_end == model::AtEnd::loop ? -1 : -2}};
+  j["statistics"] = {{"wall_s", wall_s},
+                     {"expansions", plan.statistics.expansions},
+                     {"cost_evaluations", plan.statistics.cost_evaluations},
+                     {"current_evaluations", plan.statistics.current_evaluations}};
+  j["provenance"] = {
+      {"forecast", c.ocean->label()}, {"mission_sha256", c.mission_sha256}, {"version", world::program_version()}};
+  return j;
+}
+
+std::string hours(double seconds) {
+  const auto minutes = static_cast<long>(std::llround(seconds / 60));
+  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+void print_table(const Case& c, const mission::Candidate& found, std::ostream& out) {
+  const auto& plan = found.plan;
+  const auto& p = c.request.problem;
+  out << fmt::format("plan by {} for {} ({})\n", plan.method, c.mission.name, c.ocean->label());
+  if (plan.reaches_goal())
+    out << fmt::format("reaches the goal {} after the fix, at {}\n", hours(plan.arrival_s - p.start.fix_s),
+                       utc_text(instant_at(plan.arrival_s)));
+  else
+    out << fmt::format("does not reach the goal: {}; comes within {:.1f} km of it\n", plan.reason,
+                       plan.remaining.si() / 1000);
+  out << "stint  dive                   latitude  longitude  heading  current m/s   surfacing  steering\n";
+  for (std::size_t k = 0; k < plan.stints.size(); ++k) {
+    const auto& s = plan.stints[k];
+    out << fmt::format("{:5}  {}  {:8.4f}  {:9.4f}  {:7.1f}  {:5.2f} at {:03.0f}  {:8.4f},{:.4f}  {:.0f} m{}\n", k + 1,
+                       utc_text(instant_at(s.dive_s)), s.dive.lat.degrees(), s.dive.lon.degrees(), s.heading.degrees(),
+                       s.dac.speed().si(), Course::of(s.dac.east.si(), s.dac.north.si()).degrees(),
+                       s.surface.lat.degrees(), s.surface.lon.degrees(), s.steering_error.si(),
+                       s.arrives ? "  arrives" : "");
+  }
+  out << found.file_name << " (radius " << found.list.radius.si() << " m):";
+  for (const auto& w : found.list.points) out << fmt::format(" {:.4f},{:.4f}", w.at.lat.degrees(), w.at.lon.degrees());
+  out << "\n";
+}
+
+verify::VerifyRequest verify_request(const Case& c, const mission::Candidate& found) {
+  verify::VerifyRequest v;
+  auto& d = v.dossier;
+  const auto& p = c.request.problem;
+  d.file_name = found.file_name;
+  d.file_bytes = found.file_bytes;
+  d.glider_expected = c.mission.glider;
+  d.at.glider = c.mission.glider;
+  d.at.fix = p.start.fix;
+  d.at.fix_taken = instant_at(p.start.fix_s);
+  d.at.heard = d.at.fix_taken;
+  d.current_surfacing = d.answers_surfacing = c.request.surfacing;
+  d.glider = p.glider;
+  d.believed_current = p.believed_current;
+  d.schedule = p.schedule;
+  d.fix_s = p.start.fix_s;
+  d.horizon_s = found.horizon_s;
+  d.rules.coast_margin = p.coast_margin;
+  d.rules.max_waypoints = c.mission.max_waypoints;
+  d.rules.slot = c.mission.slot;
+  d.rules.max_wpt_distance = c.mission.max_wpt_distance;
+  d.promise = found.promise;
+  d.judged_s = p.start.fix_s;
+  d.deadline_s = p.start.fix_s + c.mission.window_max.count();
+  v.grid = c.ocean->grid;
+  v.grid_options = c.ocean->options;
+  v.analytic = c.ocean->analytic;
+  v.analytic_start = c.ocean->analytic_start;
+  v.analytic_box = c.ocean->analytic_box;
+  v.coast = c.chart->coast;
+  v.keep_in = c.chart->keep_in;
+  v.keep_out = c.chart->keep_out;
+  return v;
+}
+
+/// Judges the list and writes it when it is accepted; the exit code.
+int write_goto(const Case& c, const mission::Candidate& found, const std::string& path, world::World& world,
+               std::ostream& err) {
+  const auto verdict = verify::judge_request(verify_request(c, found), world.files);
+  if (!verdict) {
+    err << "glidehelm plan: no verdict, nothing written: " << verdict.error().message() << "\n";
+    return 4;
+  }
+  if (!verdict->accepted) {
+    err << "glidehelm plan: the verifier refuses the list, nothing written:\n" << verify::explain(*verdict);
+    return 4;
+  }
+  const auto slash = path.find_last_of('/');
+  const auto folder_path = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  const auto name = slash == std::string::npos ? path : path.substr(slash + 1);
+  auto folder = world.files.open_folder(folder_path);
+  if (!folder) {
+    err << "glidehelm plan: --goto: " << folder.error().message() << "\n";
+    return 2;
+  }
+  if (auto made = (*folder)->create(name, found.file_bytes, 0644); !made) {
+    err << "glidehelm plan: --goto: " << made.error().message() << "\n";
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+
+int run_plan(const PlanOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
+  const auto c = prepare(options, world, err);
+  if (!c) {
+    err << "glidehelm plan: " << c.error().message << "\n";
+    return c.error().code;
+  }
+  const auto begin = world.clock.tick();
+  const auto waited = [&] { return Seconds{world.clock.tick() - begin}; };
+  std::optional<mission::Candidate> found;
+  auto problem = daemon::answer(
+      c->request, *c->ocean, c->chart->chart,
+      options.budget ? std::function<bool()>{[&] { return waited() >= *options.budget; }} : std::function<bool()>{},
+      [&](mission::Candidate candidate) { found = std::move(candidate); });
+  if (!found && problem.find("start") != std::string::npos) problem += swap_hint(*c);
+  if (options.json)
+    out << plan_json(*c, found, problem, waited().count()).dump() << "\n";
+  else if (found)
+    print_table(*c, *found, out);
+  if (!found) {
+    err << "glidehelm plan: " << problem << "\n";
+    return options.budget && waited() >= *options.budget ? 5 : 1;
+  }
+  if (!options.goto_file.empty())
+    if (const int code = write_goto(*c, *found, options.goto_file, world, err); code != 0) return code;
+  return found->plan.reaches_goal() ? 0 : 1;
+}
+
+}  // namespace glidehelm::cli

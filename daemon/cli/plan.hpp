@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "daemon/world/world.hpp"
+
+namespace glidehelm::cli {
+
+/// `glidehelm plan MISSION.yaml [--method NAME] [--from LAT,LON] [--at TIME] [--water E,N] [--seed N] [--budget SECONDS]
+/// [--goto FILE] [--json]`.
+struct PlanOptions {
+  std::string mission;
+  std::string method;                             ///< empty: the mission's
+  std::optional<std::pair<double, double>> from;  ///< degrees: latitude, longitude
+  std::optional<Instant> at;
+  std::optional<std::pair<double, double>> water;  ///< measured current, east and north, m/s
+  std::optional<std::uint64_t> seed;
+  std::optional<Seconds> budget;  ///< none: every stage runs to its work limit, the answer is deterministic
+  std::string goto_file;          ///< write the verified list there; empty: none
+  bool json{};
+};
+
+/// Plans once, offline. The start is --from, else the mission's; the time is --at, else the mission's, else now, else (said on `err`) the
+/// first time of the forecast when that does not reach to now. JSON as in product.md 9 (schema glidehelm/plan/v1). With --goto the list is
+/// judged as the daemon's files are, and written only when it is accepted.
+/// Returns 0 reaches_goal, 1 any other status, 2 misuse, 4 the verifier refuses the list, 5 the budget ended with nothing.
+int run_plan(const PlanOptions& options, world::World& world, std::ostream& out, std::ostream& err);
+
+}  // namespace glidehelm::cli

@@ -12,8 +12,6 @@ namespace glidehelm::ocean {
 
 namespace {
 
-constexpr double kRadians = kPi / 180.0;
-
 Expected<Sample, NoCurrent> answer(double east, double north, bool borrowed) {
   return Sample{{MetresPerSecond{east}, MetresPerSecond{north}}, borrowed};
 }

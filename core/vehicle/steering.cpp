@@ -11,6 +11,7 @@ constexpr double kStep = 120.0;  // seconds
 constexpr int kMostStints = 200;
 constexpr double kShortestLeg = 500.0;     // metres
 constexpr double kSmallestRadius = 100.0;  // metres
+constexpr double kFarAim = 30'000.0;      // metres: beyond, the local metric bends bearings (0.2 deg at 60 N)
 constexpr double kNoMoreTime = 1e-6;       // seconds
 
 struct Vector {
@@ -25,6 +26,10 @@ Vector vector_of(Current c) { return {c.east.si(), c.north.si()}; }
 Vector towards(double lat, double lon, GeoPoint to) {
   const double to_lat = to.lat.radians(), to_lon = to.lon.radians();
   const auto offset = local_offset(lat, lon, to_lat, to_lon);
+  if (offset.length() > kFarAim) {
+    const auto line = geodesic(GeoPoint::from_kernel(lat, lon), to);
+    return {line.length.si() * line.departing.east(), line.length.si() * line.departing.north()};
+  }
   const double half = 0.5 * std::remainder(to_lon - lon, 2 * kPi) * std::sin(0.5 * (lat + to_lat));
   return {offset.east * std::cos(half) - offset.north * std::sin(half),
           offset.east * std::sin(half) + offset.north * std::cos(half)};

@@ -190,6 +190,11 @@ void Session::hear(const protocol::DialogEvent& event) {
       session.feed(mission::TransferHeard{e.file, true});
     }
     void operator()(const protocol::MafilesReread&) const { session.feed(mission::ListReread{}); }
+    void operator()(const protocol::AbortSeen& e) const {
+      session.desk_.log.alert(session.entry_.name, fmt::format("the dialog says that a mission was aborted: {}", e.cause));
+    }
+    void operator()(const protocol::PromptSeen&) const {}
+    void operator()(const protocol::KeyHeard&) const {}
   };
   std::visit(Ear{*this}, event);
 }

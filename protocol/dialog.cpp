@@ -1,484 +1,403 @@
 #include "protocol/dialog.hpp"
 
-#include <array>
-#include <charconv>
-#include <cmath>
-#include <cstdio>
+#include <algorithm>
 #include <utility>
 
 #include "core/base/text.hpp"
-#include "core/base/utc.hpp"
-#include "protocol/latlon.hpp"
 
 namespace glidehelm::protocol {
 
 namespace {
 
-constexpr std::size_t kMostSensors = 256;
-constexpr double kNeverUpdated = 1e8;  // the age of a value never updated is 1e+308
+constexpr std::size_t kMostSensors = 512;
+constexpr std::size_t kMostDamaged = 8;
 
-/// Reads a text from left to right; every step says whether it matched.
-class Cursor {
- public:
-  explicit Cursor(std::string_view text) : rest_{text} {}
-  bool text(std::string_view wanted) {
-    if (rest_.substr(0, wanted.size()) != wanted) return false;
-    rest_.remove_prefix(wanted.size());
-    return true;
-  }
-  void blanks() {
-    while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
-  }
-  /// A number of the dialog (R6): [-]digits[.digits][e[±]digits], as text.
-  bool number(std::string_view& out) {
-    std::size_t n = 0;
-    const auto digits = [&] {
-      const std::size_t from = n;
-      while (n < rest_.size() && rest_[n] >= '0' && rest_[n] <= '9') ++n;
-      return n > from;
-    };
-    if (n < rest_.size() && (rest_[n] == '-' || rest_[n] == '+')) ++n;
-    if (!digits()) return false;
-    if (n < rest_.size() && rest_[n] == '.') {
-      ++n;
-      if (!digits()) return false;
-    }
-    if (n < rest_.size() && (rest_[n] == 'e' || rest_[n] == 'E')) {
-      const std::size_t mantissa = n++;
-      if (n < rest_.size() && (rest_[n] == '-' || rest_[n] == '+')) ++n;
-      if (!digits()) n = mantissa;
-    }
-    out = rest_.substr(0, n);
-    rest_.remove_prefix(n);
-    return true;
-  }
-  bool number(double& out) {
-    std::string_view digits;
-    if (!number(digits)) return false;
-    const auto value = number_from(digits);
-    if (!value) return false;
-    out = *value;
-    return true;
-  }
-  bool integer(int& out) {
-    std::string_view digits;
-    if (!number(digits)) return false;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), out);
-    return error == std::errc{} && end == digits.data() + digits.size();
-  }
-  bool letter(char& out) {
-    if (rest_.empty()) return false;
-    out = rest_.front();
-    rest_.remove_prefix(1);
-    return true;
-  }
-  /// Everything up to `end`, which is passed over.
-  bool until(std::string_view end, std::string_view& out) {
-    const auto at = rest_.find(end);
-    if (at == std::string_view::npos) return false;
-    out = rest_.substr(0, at);
-    rest_.remove_prefix(at + end.size());
-    return true;
-  }
-  [[nodiscard]] std::string_view rest() const { return rest_; }
-
- private:
-  std::string_view rest_;
-};
-
-/// The text behind `label`, wherever it stands (R5: searched, not anchored).
-std::optional<Cursor> behind(std::string_view line, std::string_view label) {
-  const auto at = line.find(label);
-  if (at == std::string_view::npos) return std::nullopt;
-  return Cursor{line.substr(at + label.size())};
+/// The automaton of the usual words is large; all readers share it.
+std::shared_ptr<const FactFinder> usual_finder() {
+  static const auto finder = std::make_shared<const FactFinder>(DialogWords{});
+  return finder;
 }
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_blank(std::string_view text) { return text.find_first_not_of(" \t") == std::string_view::npos; }
 
-/// Age in seconds before ` secs ago`; 1e+308 is read as "never".
-bool age(Cursor& c, double& out) {
-  c.blanks();
-  std::string_view digits;
-  if (!c.number(digits) || !c.text(" secs ago")) return false;
-  out = number_from(digits).value_or(1e308);
-  return true;
+template <class T>
+T& as(Fact& fact) {
+  return std::get<T>(fact.value);
 }
 
-/// `Thu Nov  9 10:06:56 2023`, UTC, month names by table.
-std::optional<GliderTime> glider_time(Cursor& c) {
-  constexpr std::array<std::string_view, 12> kMonths{"Jan", "Feb", "Mar", "Apr", "May", "Jun",
-                                                     "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
-  const auto text = c.rest();
-  if (text.size() < 24) return std::nullopt;
-  int month = 0;
-  for (std::size_t i = 0; i < kMonths.size(); ++i)
-    if (text.substr(4, 3) == kMonths[i]) month = static_cast<int>(i) + 1;
-  Cursor rest{text.substr(7)};
-  int day{}, hour{}, minute{}, second{}, year{};
-  rest.blanks();
-  const bool matched = month > 0 && rest.integer(day) && rest.text(" ") && rest.integer(hour) && rest.text(":") &&
-                       rest.integer(minute) && rest.text(":") && rest.integer(second) && rest.text(" ") &&
-                       rest.integer(year);
-  if (!matched) return std::nullopt;
-  const auto instant = utc_from_civil(year, month, day, hour, minute, second);
-  if (!instant) return std::nullopt;
-  c = rest;
-  return GliderTime{std::chrono::floor<std::chrono::seconds>(instant->time_since_epoch())};
-}
-
-/// A label that names another location line must not be read as this one: no letter may stand before it.
-std::optional<Cursor> location_behind(std::string_view line, std::string_view label) {
-  for (std::size_t from = 0;;) {
-    const auto at = line.find(label, from);
-    if (at == std::string_view::npos) return std::nullopt;
-    if (at == 0 || !is_letter(line[at - 1])) return Cursor{line.substr(at + label.size())};
-    from = at + 1;
+/// The place of a location line in its block.
+std::optional<Location>& slot_of(SurfaceBlock& block, Say say) {
+  switch (say) {
+    case Say::dr:
+      return block.dead_reckoned;
+    case Say::too_far:
+      return block.too_far;
+    case Say::invalid:
+      return block.invalid;
+    default:
+      return block.gps;
   }
 }
 
-std::optional<LocationLine> location(Cursor c) {
-  LocationLine l;
-  std::string_view lat, lon;
-  c.blanks();
-  if (!c.number(lat) || !c.text(" ") || !c.letter(l.lat_letter)) return std::nullopt;
-  c.blanks();
-  if (!c.number(lon) || !c.text(" ") || !c.letter(l.lon_letter) || !c.text(" measured")) return std::nullopt;
-  if (!age(c, l.age_s)) return std::nullopt;
-  l.lat = lat;
-  l.lon = lon;
-  return l;
-}
+bool is_location(Say say) { return say == Say::dr || say == Say::too_far || say == Say::invalid || say == Say::gps; }
+
+bool is_prompt(Say say) { return say == Say::gliderdos || say == Say::gliderlab || say == Say::scidos; }
 
 }  // namespace
 
-// ---- the stream -----------------------------------------------------------------------------------------------------
-
-std::vector<DialogEvent> DialogReader::append(std::string_view bytes, Instant heard) {
-  splitter_.append(bytes, {[&](std::string_view line) { take_line(line, heard); },
-                           [&](std::string_view block) {
-                             ++counts_.dockserver_blocks;
-                             out_.emplace_back(DockserverBlock{std::string{block}});
-                           }});
-  counts_.discarded_bytes = splitter_.discarded();
-  return std::exchange(out_, {});
+const SensorReading* SurfaceBlock::sensor(std::string_view name) const {
+  const auto found =
+      std::find_if(sensors.rbegin(), sensors.rend(), [&](const SensorReading& s) { return s.name == name; });
+  return found == sensors.rend() ? nullptr : &*found;
 }
 
-std::vector<DialogEvent> DialogReader::flush_idle(Instant) {
-  if (open_ && !given_ && block_.gps) give_block();
-  return std::exchange(out_, {});
+DialogReader::DialogReader() : finder_{usual_finder()} {}
+DialogReader::DialogReader(const DialogWords& words)
+    : finder_{words == DialogWords{} ? usual_finder() : std::make_shared<const FactFinder>(words)} {}
+
+std::vector<DialogEvent> DialogReader::append(std::string_view bytes, Instant heard) {
+  heard_ = heard;
+  splitter_.append(bytes, *this);
+  return std::exchange(events_, {});
+}
+
+std::vector<DialogEvent> DialogReader::flush_idle(Instant heard) {
+  heard_ = heard;
+  const std::string text{splitter_.unfinished()};
+  facts_.clear();
+  finder_->find(text, Line::kWhole, facts_);
+  if (!facts_.empty() && is_prompt(facts_.back().say) && is_blank(std::string_view{text}.substr(facts_.back().end))) {
+    const std::size_t end = facts_.back().end;
+    Line line;
+    line.text = std::string_view{text}.substr(0, end);
+    line.number = line_;
+    take_line(line);
+    splitter_.forget(end);
+  }
+  if (open_ && changed_) give_block();
+  return std::exchange(events_, {});
 }
 
 std::vector<DialogEvent> DialogReader::end(Instant heard) {
-  splitter_.end({[&](std::string_view line) { take_line(line, heard); },
-                 [&](std::string_view block) {
-                   ++counts_.dockserver_blocks;
-                   out_.emplace_back(DockserverBlock{std::string{block}});
-                 }});
-  counts_.discarded_bytes = splitter_.discarded();
-  auto events = flush_idle(heard);
-  open_ = console_ = shell_ = false;
-  first_ = true;
-  return events;
+  heard_ = heard;
+  splitter_.end(*this);
+  finish_block();
+  last_text_.clear();
+  greeting_ = Greeting::none;
+  name_.clear();
+  water_ = WaterState::unknown;
+  console_ = Console::unknown;
+  prompt_ = {};
+  resumed_ = ended_ = false;
+  return std::exchange(events_, {});
 }
 
-void DialogReader::begin(SurfaceBlock::Kind kind, Instant heard) {
-  if (open_ && !given_ && block_.gps) give_block();
-  block_ = {};
-  block_.kind = kind;
-  block_.first_line = line_;
-  block_.heard = heard;
+DialogCounts DialogReader::counts() const {
+  auto counts = counts_;
+  counts.long_lines = splitter_.long_lines();
+  counts.discarded_bytes = splitter_.discarded_bytes();
+  return counts;
+}
+
+void DialogReader::take_block(DockserverBlock block) {
+  ++counts_.dockserver_blocks;
+  events_.emplace_back(std::move(block));
+}
+
+void DialogReader::take_line(const Line& line) {
+  line_ = line.number;
+  facts_.clear();
+  finder_->find(line.text, line.joined_at, facts_);
+  if (line.cut) {
+    // Only a prompt is complete without a line end; of anything else that was cut nothing is used.
+    std::erase_if(facts_, [](const Fact& f) { return !is_prompt(f.say); });
+    if (facts_.empty() && !is_blank(line.text)) note_damage(line.text);
+    static_cast<void>(apply_all());
+    last_text_.clear();
+    return;
+  }
+  if (line.after_block && join_with_last(line)) return;
+  const bool any_whole = std::any_of(facts_.begin(), facts_.end(), [](const Fact& f) { return f.whole; });
+  const bool ends = ends_connection_block(line.text);
+  const bool damaged = apply_all();
+  if (damaged) note_damage(line.text);
+  if (ends && open_ && !block_.at_surface && has_location()) finish_block();
+  if (any_whole || is_blank(line.text)) {
+    last_text_.clear();
+  } else {
+    last_text_ = line.text;
+    last_damaged_ = damaged;
+  }
+}
+
+/// A block that the dockserver printed between two lines may have torn one line in two (slocum.md R3). The halves are
+/// put together when neither says anything alone and the whole says something completely.
+bool DialogReader::join_with_last(const Line& line) {
+  const bool alone = std::any_of(facts_.begin(), facts_.end(), [](const Fact& f) { return f.whole; });
+  if (alone || last_text_.empty()) return false;
+  const std::string joined = last_text_ + std::string{line.text};
+  std::vector<Fact> facts;
+  finder_->find(joined, last_text_.size(), facts);
+  if (facts.empty() || std::any_of(facts.begin(), facts.end(), [](const Fact& f) { return !f.whole; })) return false;
+  if (last_damaged_) {
+    --counts_.damaged_lines;
+    if (open_ && !block_.damaged.empty() && block_.damaged.back() == last_text_) block_.damaged.pop_back();
+    block_.gps_damaged = false;
+  }
+  facts_ = std::move(facts);
+  static_cast<void>(apply_all());
+  last_text_.clear();
+  return true;
+}
+
+/// True when one of the facts was not whole.
+bool DialogReader::apply_all() {
+  bool damaged = false;
+  for (auto& fact : facts_) {
+    damaged = damaged || !fact.whole;
+    fact.whole ? apply(fact) : apply_damaged(fact.say);
+  }
+  return damaged;
+}
+
+void DialogReader::note_damage(std::string_view text) {
+  ++counts_.damaged_lines;
+  if (open_ && block_.damaged.size() < kMostDamaged) block_.damaged.emplace_back(text);
+}
+
+/// A connection block ends with the first line that is no part of it; noise and blank lines may stand inside.
+bool DialogReader::ends_connection_block(std::string_view text) const {
+  if (is_blank(text)) return false;
+  return std::none_of(facts_.begin(), facts_.end(), [](const Fact& f) {
+    return is_location(f.say) || f.say == Say::sensor || f.say == Say::noise || f.say == Say::oddity ||
+           f.say == Say::curr_time || f.say == Say::vehicle || f.say == Say::iridium;
+  });
+}
+
+void DialogReader::apply(Fact& fact) {
+  switch (fact.say) {
+    case Say::connection_event:
+    case Say::iridium:
+      return carrier(fact);
+    case Say::vehicle:
+      begin_block_after_time();
+      block_.vehicle = as<std::string>(fact);
+      return hear_name(block_.vehicle);
+    case Say::curr_time:
+      begin_block_after_time();
+      block_.curr_time = as<CurrTime>(fact).time;
+      block_.mission_time_s = as<CurrTime>(fact).mission_time_s;
+      changed_ = true;
+      return;
+    case Say::dr:
+    case Say::too_far:
+    case Say::invalid:
+    case Say::gps:
+      return locate(fact.say, &as<Location>(fact));
+    case Say::sensor:
+      return read_sensor(std::move(as<SensorReading>(fact)));
+    case Say::at_surface:
+      ++counts_.at_surface_blocks;
+      begin_block(true);
+      resumed_ = ended_ = false;
+      console_ = block_.console = Console::mission;
+      block_.vehicle = as<std::string>(fact);
+      return hear_name(block_.vehicle);
+    case Say::because:
+      begin_block_after_time();
+      block_.at_surface = true;
+      block_.because = std::move(as<BecauseLine>(fact));
+      console_ = block_.console = Console::mission;
+      break;
+    case Say::mission:
+      begin_block_after_time();
+      block_.mission = std::move(as<MissionLine>(fact));
+      break;
+    case Say::water:
+      water_ = as<WaterState>(fact);
+      break;
+    case Say::waypoint:
+      block_.waypoint = std::move(as<WaypointLine>(fact));
+      break;
+    case Say::devices:
+      block_.devices = as<DevicesLine>(fact);
+      break;
+    case Say::aborts:
+      block_.aborts = static_cast<int>(as<double>(fact));
+      break;
+    case Say::until_diving:
+      return window(as<double>(fact));
+    case Say::extending:
+      events_.emplace_back(WindowExtended{Seconds{as<double>(fact)}});
+      return;
+    case Say::typed_resume:
+    case Say::resuming:
+      return resume(MissionResumed::By::key);
+    case Say::timed_out:
+      return resume(MissionResumed::By::time);
+    case Say::console_off:
+      return resume(MissionResumed::By::console_off);
+    case Say::completed:
+      return end_mission(std::move(as<std::string>(fact)));
+    case Say::end_of_mission:
+      return end_mission({});
+    case Say::starting:
+      ended_ = false;
+      console_ = Console::unknown;
+      return;
+    case Say::gliderdos:
+    case Say::gliderlab:
+    case Say::scidos:
+      return prompt(fact);
+    case Say::heard_a:
+      events_.emplace_back(KeyHeard{std::move(as<std::string>(fact))});
+      return;
+    case Say::reread:
+      events_.emplace_back(MafilesReread{});
+      return;
+    case Say::transfer_starts:
+      events_.emplace_back(TransferStarted{std::move(as<std::string>(fact))});
+      return;
+    case Say::transfer_done:
+      events_.emplace_back(TransferDone{std::move(as<std::string>(fact))});
+      return;
+    case Say::noise:
+    case Say::oddity:
+      return;
+  }
+  changed_ = open_;
+}
+
+void DialogReader::apply_damaged(Say say) {
+  if (is_location(say)) return locate(say, nullptr);
+  // A block whose time or name is garbled is another block all the same: nothing binds to the older time.
+  if (say == Say::curr_time || say == Say::vehicle) begin_block_after_time();
+  if (say == Say::at_surface) begin_block(false);
+  if (say == Say::curr_time) {
+    block_.curr_time.reset();
+    block_.mission_time_s.reset();
+  }
+}
+
+void DialogReader::carrier(const Fact& fact) {
+  if (std::holds_alternative<CarrierLost>(fact.value)) {
+    finish_block();
+    if (greeting_ != Greeting::carrier) greeting_ = Greeting::none;
+    return;
+  }
+  const auto now = fact.say == Say::iridium ? Greeting::console : Greeting::carrier;
+  // The carrier and the console behind it are one connection; so are carriers on which nothing was said.
+  if (greeting_ != Greeting::carrier) open_connection();
+  greeting_ = now;
+}
+
+void DialogReader::open_connection() {
+  finish_block();
+  ++counts_.connections;
+  name_.clear();
+  water_ = WaterState::unknown;
+  console_ = Console::unknown;
+  prompt_ = {};
+  resumed_ = ended_ = false;
+  events_.emplace_back(ConnectionOpened{});
+  begin_block(false);
+}
+
+void DialogReader::hear_name(const std::string& name) {
+  greeting_ = Greeting::none;
+  if (name_ == name) return;
+  name_ = name;
+  events_.emplace_back(NameHeard{name});
+}
+
+void DialogReader::begin_block(bool at_surface) {
+  finish_block();
   open_ = true;
-  given_ = false;
+  changed_ = false;
+  block_ = {};
+  block_.at_surface = at_surface;
+  block_.console = console_;
+}
+
+/// A line that stands above the locations of its block: when the block has those already, it is the next block's.
+void DialogReader::begin_block_after_time() {
+  if (!open_ || has_location() || block_.gps_damaged || !block_.sensors.empty()) begin_block(false);
+}
+
+bool DialogReader::has_location() const {
+  return block_.dead_reckoned || block_.too_far || block_.invalid || block_.gps;
+}
+
+void DialogReader::finish_block() {
+  if (open_ && changed_) give_block();
+  open_ = false;
 }
 
 void DialogReader::give_block() {
-  given_ = true;
-  out_.emplace_back(BlockRead{block_});
+  changed_ = false;
+  if (!block_.gps && !block_.gps_damaged) return;
+  auto block = block_;
+  if (block.vehicle.empty()) block.vehicle = name_;
+  block.water = water_;
+  events_.emplace_back(BlockRead{std::move(block)});
 }
 
-void DialogReader::take_line(std::string_view line, Instant heard) {
-  ++line_;
-  if (line.find("Carrier Detect found") != std::string_view::npos) {
-    if (open_ && !given_ && block_.gps) give_block();
-    open_ = false;
-    console_ = false;
-    first_ = true;
+void DialogReader::locate(Say say, Location* location) {
+  auto& slot = slot_of(block_, say);
+  const bool gps = say == Say::gps;
+  if (!open_ || slot || !block_.sensors.empty() || (gps && block_.gps_damaged)) begin_block(false);
+  changed_ = true;
+  if (gps) {
+    block_.line = line_;
+    block_.heard = heard_;
+    block_.gps_damaged = location == nullptr;
+    if (location != nullptr) ++counts_.gps_lines;
   }
-  if (line.find("Iridium console active and ready") != std::string_view::npos) {
-    ++counts_.connections;
-    out_.emplace_back(ConnectionOpened{});
-    console_ = true;
-    shell_ = false;
-    begin(SurfaceBlock::Kind::connection, heard);
-    return;
-  }
-  if (line.find("GliderDos") != std::string_view::npos || line.find("GliderLAB") != std::string_view::npos)
-    shell_ = true;
-  if (take_fact(line, heard)) return;
-  // The first line that is no fact ends the facts of a connection block.
-  if (open_ && !given_ && block_.kind != SurfaceBlock::Kind::at_surface && block_.gps) give_block();
-  take_event(line);
+  if (location != nullptr) slot = std::move(*location);
 }
 
-bool DialogReader::take_fact(std::string_view line, Instant heard) {
-  if (auto name = behind(line, "Vehicle Name:")) {
-    name->blanks();
-    const std::string text{trimmed(name->rest())};
-    const bool named_block = open_ && block_.vehicle.empty() && !block_.curr_time;
-    if (!named_block) begin(first_ && !shell_ ? SurfaceBlock::Kind::connection : SurfaceBlock::Kind::other, heard);
-    first_ = false;
-    block_.vehicle = text;
-    out_.emplace_back(NameHeard{text});
-    return true;
-  }
-  if (const auto at = line.find(" at surface."); at != std::string_view::npos && line.find("Glider ") < at) {
-    ++counts_.at_surface_blocks;
-    shell_ = first_ = false;
-    begin(SurfaceBlock::Kind::at_surface, heard);
-    return true;
-  }
-  if (auto time = behind(line, "Curr Time: ")) {
-    const auto read = glider_time(*time);
-    if (!read) {
-      ++counts_.damaged_lines;
-      return true;
-    }
-    if (open_ && block_.curr_time && block_.gps)
-      begin(SurfaceBlock::Kind::other, heard);  // printed again without a header
-    if (!open_) begin(SurfaceBlock::Kind::other, heard);
-    block_.curr_time = read;
-    int mission_time{};
-    time->blanks();
-    if (time->text("MT:")) {
-      time->blanks();
-      if (time->integer(mission_time)) block_.mission_time_s = mission_time;
-    }
-    return true;
-  }
-  if (take_location(line, heard) || take_sensor(line)) return true;
-  if (!open_) return false;
-  if (auto because = behind(line, "Because:")) {
-    std::string_view text, behavior;
-    double start_when{};
-    if (because->until(" [behavior ", text) && because->until(" start_when = ", behavior) &&
-        because->number(start_when) && because->text("]"))
-      block_.because = model::SurfaceReason{std::string{text}, std::string{behavior}, start_when};
-    else
-      ++counts_.damaged_lines;
-    return true;
-  }
-  if (auto mission = behind(line, "MissionName:")) {
-    std::string_view name, number, segment;
-    if (mission->until(" MissionNum:", name) && mission->until(" (", number) && mission->until(")", segment)) {
-      block_.mission = lower(trimmed(name));
-      block_.mission_number = number;
-      block_.segment = segment;
-    } else {
-      ++counts_.damaged_lines;
-    }
-    return true;
-  }
-  if (auto waypoint = behind(line, "Waypoint: (")) {
-    WaypointLine w;
-    std::string_view lat, lon;
-    if (waypoint->number(lat) && waypoint->text(",") && waypoint->number(lon) && waypoint->text(") Range: ") &&
-        waypoint->number(w.range_m) && waypoint->text("m, Bearing: ") && waypoint->number(w.bearing_deg) &&
-        waypoint->text("deg")) {
-      w.lat = lat;
-      w.lon = lon;
-      block_.waypoint = w;
-    } else {
-      ++counts_.damaged_lines;
-    }
-    return true;
-  }
-  if (line.find("Water Velocity Calculations COMPLETE") != std::string_view::npos) {
-    block_.water_complete = true;
-    return true;
-  }
-  if (auto window = behind(line, "Time until diving is:")) {
-    int seconds{};
-    window->blanks();
-    if (!window->integer(seconds) || !window->text(" secs") || seconds < 0) {
-      ++counts_.damaged_lines;
-      return true;
-    }
-    if (!given_ && block_.gps) {
-      block_.until_diving_s = seconds;
-      give_block();
-    } else {
-      out_.emplace_back(WindowHeard{seconds});
-    }
-    return true;
-  }
-  // Lines of an at-surface block that carry nothing for us, and blank lines, do not end it.
-  return block_.kind == SurfaceBlock::Kind::at_surface && trimmed(line).empty();
-}
-
-bool DialogReader::take_location(std::string_view line, Instant heard) {
-  struct Label {
-    std::string_view text;
-    std::optional<LocationLine> SurfaceBlock::*field;
-  };
-  constexpr std::array<Label, 4> kLabels{
-      Label{"GPS Location:", &SurfaceBlock::gps}, Label{"DR  Location:", &SurfaceBlock::dead_reckoned},
-      Label{"GPS TooFar:", &SurfaceBlock::too_far}, Label{"GPS Invalid :", &SurfaceBlock::invalid}};
-  for (const auto& label : kLabels) {
-    const auto found = location_behind(line, label.text);
-    if (!found) continue;
-    auto read = location(*found);
-    if (!read) {
-      ++counts_.damaged_lines;
-      return true;
-    }
-    if (!open_) begin(SurfaceBlock::Kind::other, heard);
-    read->line = line_;
-    block_.*label.field = *read;
-    if (label.field == &SurfaceBlock::gps) {
-      block_.heard = heard;
-      const auto lat = number_from(read->lat);
-      const bool sentinel = read->age_s > kNeverUpdated || !lat || std::abs(*lat) >= 9e6;
-      ++(sentinel ? counts_.gps_sentinels : counts_.gps_lines);
-    }
-    return true;
-  }
-  return false;
-}
-
-bool DialogReader::take_sensor(std::string_view line) {
-  auto c = behind(line, "sensor:");
-  if (!c) return false;
-  SensorLine sensor;
-  std::string_view name, unit, digits;
-  if (!c->until("(", name) || !c->until(")=", unit) || name.size() > 64 || !c->number(digits) ||
-      !age(*c, sensor.age_s)) {
-    ++counts_.damaged_lines;
-    return true;
-  }
+void DialogReader::read_sensor(SensorReading reading) {
   ++counts_.sensor_lines;
-  const auto value = number_from(digits);
-  if (!value || !open_) return true;
-  sensor.value = *value;
-  sensor.unit = unit;
-  if (block_.sensors.size() < kMostSensors) block_.sensors[std::string{name}] = sensor;
-  return true;
+  if (!open_) begin_block(false);
+  changed_ = true;
+  if (block_.sensors.size() < kMostSensors) block_.sensors.push_back(std::move(reading));
 }
 
-bool DialogReader::take_event(std::string_view line) {
-  const auto has = [&](std::string_view text) { return line.find(text) != std::string_view::npos; };
-  if (has("RESUMING MISSION") || has("TIMED OUT WAITING FOR A CHARACTER")) {
-    out_.emplace_back(MissionResumed{});
-  } else if (has("terminating the mission") || has("Mission completed:")) {
-    out_.emplace_back(MissionEnded{});
-  } else if (has("Extending surface time by 5 minutes")) {
-    out_.emplace_back(WindowExtended{});
-  } else if (has("MAFILES will be re-read") || has("MAFILES reread.")) {
-    out_.emplace_back(MafilesReread{});
-  } else if (auto started = behind(line, "Starting zModem transfer of ")) {
-    std::string_view file;
-    if (started->until(" ", file)) out_.emplace_back(TransferStarted{std::string{file}});
-  } else if (auto done = behind(line, "zModem transfer DONE for file ")) {
-    out_.emplace_back(TransferDone{std::string{trimmed(done->rest())}});
-  } else {
-    return false;
+void DialogReader::window(double seconds) {
+  if (open_) {
+    block_.until_diving_s = seconds + between(block_.heard, heard_).count();
+    changed_ = true;
+    finish_block();
   }
-  return true;
+  events_.emplace_back(WindowHeard{static_cast<int>(seconds)});
 }
 
-// ---- one fix ---------------------------------------------------------------------------------------------------------
-
-namespace {
-
-/// A location line's signed text: letters are always N and E in practice, the sign tells the hemisphere. S and W are taken with an
-/// unsigned number only (S3).
-std::optional<std::string> signed_text(const std::string& digits, char letter, char positive, char negative) {
-  if (letter == positive) return digits;
-  if (letter == negative && digits.front() != '-') return "-" + digits;
-  return std::nullopt;
+void DialogReader::resume(MissionResumed::By by) {
+  finish_block();
+  water_ = WaterState::unknown;
+  if (!std::exchange(resumed_, true)) events_.emplace_back(MissionResumed{by});
 }
 
-std::optional<double> fresh(const SurfaceBlock& block, const char* name) {
-  const auto found = block.sensors.find(name);
-  if (found == block.sensors.end() || !(found->second.age_s <= kNeverUpdated)) return std::nullopt;
-  return found->second.value;
+void DialogReader::end_mission(std::string cause) {
+  finish_block();
+  console_ = Console::unknown;
+  if (std::exchange(ended_, true)) return;
+  events_.emplace_back(MissionEnded{cause});
+  if (cause.starts_with("MS_ABORT")) events_.emplace_back(AbortSeen{std::move(cause)});
 }
 
-/// Configured constants are meaningful whatever their age says (slocum.md 1.2).
-std::optional<double> any_age(const SurfaceBlock& block, const char* name) {
-  const auto found = block.sensors.find(name);
-  if (found == block.sensors.end()) return std::nullopt;
-  return found->second.value;
-}
-
-std::string number_text(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.0f", value);
-  return text;
-}
-
-void add_beside(model::Surfacing& s, const SurfaceBlock& block) {
-  s.at_surface = block.kind == SurfaceBlock::Kind::at_surface && !block.mission.empty();
-  s.mission = block.mission;
-  s.segment = block.segment;
-  s.because = block.because;
-  if (block.until_diving_s) s.until_diving = Seconds{static_cast<double>(*block.until_diving_s)};
-  s.water_is_final = block.water_complete;
-  const auto vx = fresh(block, "m_water_vx"), vy = fresh(block, "m_water_vy");
-  if (vx && vy) s.water = model::LocalVelocity{MetresPerSecond{*vx}, MetresPerSecond{*vy}};
-  if (block.waypoint)
-    if (const auto at = point_from_ddmm(block.waypoint->lat, block.waypoint->lon))
-      s.aim = model::AimLine{*at, Metres{block.waypoint->range_m}, block.waypoint->bearing_deg};
-  if (const auto speed = fresh(block, "m_avg_speed"); speed && *speed > 0.05 && *speed < 2.0)
-    s.believed_speed = MetresPerSecond{*speed};
-  if (const auto correction = any_age(block, "u_use_current_correction");
-      correction && *correction >= 0 && *correction <= 2)
-    s.current_correction = *correction >= 1 ? 1 : 0;
-  if (const auto variation = any_age(block, "m_gps_mag_var"); variation && std::abs(*variation) < 1.0)
-    s.magnetic_variation = Radians{*variation};
-  for (const auto& [name, sensor] : block.sensors)
-    if (std::abs(sensor.value) < 9e6) s.sensors[name] = sensor.value;
-}
-
-}  // namespace
-
-Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const std::string& glider,
-                                                      const FixLimits& limits) {
-  const auto refuse = [&](std::string rule, std::string reason) {
-    model::Refusal refusal{std::move(rule), std::move(reason), lower(glider), block.heard, {}, {}};
-    if (block.gps) {
-      refusal.lat_ddmm = block.gps->lat;
-      refusal.lon_ddmm = block.gps->lon;
-    }
-    return unexpected(refusal);
-  };
-  if (glider.empty()) return refuse("S2", "no Vehicle Name was heard on this connection");
-  if (!block.gps) return refuse("S3", "the block has no complete GPS Location line");
-  const auto& gps = *block.gps;
-  if (block.kind == SurfaceBlock::Kind::other)
-    return refuse("S8", "a position report outside of a running mission (`where`, GliderDos) is no surfacing");
-  const auto lat_text = signed_text(gps.lat, gps.lat_letter, 'N', 'S');
-  const auto lon_text = signed_text(gps.lon, gps.lon_letter, 'E', 'W');
-  if (!lat_text || !lon_text) return refuse("S3", "the letters of the GPS line are not N and E");
-  const auto at = point_from_ddmm(*lat_text, *lon_text);
-  if (!at) return refuse("S3", at.error().message);
-  if (at->lat.degrees() == 0 && at->lon.degrees() == 0)
-    return refuse("S3", "0/0 is the receiver's empty value, not a position");
-  if (gps.age_s > kNeverUpdated) return refuse("S3", "the receiver never had a fix (age 1e+308)");
-  if (gps.age_s < 0 || gps.age_s > limits.oldest_s)
-    return refuse(
-        "S3", "the fix is " + number_text(gps.age_s) + " s old; allowed are " + number_text(limits.oldest_s) + " s");
-  if (!block.curr_time) return refuse("S3", "no Curr Time in the same block: the fix has no time");
-  model::Surfacing s;
-  s.glider = lower(glider);
-  s.heard = block.heard;
-  s.fix = *at;
-  s.fix_age = Seconds{gps.age_s};
-  s.fix_taken = after(block.heard, -s.fix_age);
-  s.curr_time = *block.curr_time;
-  s.lat_ddmm = gps.lat;
-  s.lon_ddmm = gps.lon;
-  add_beside(s, block);
-  return s;
+void DialogReader::prompt(const Fact& fact) {
+  if (fact.say == Say::scidos) return;
+  console_ = fact.say == Say::gliderdos ? Console::gliderdos : Console::gliderlab;
+  block_.console = console_;
+  changed_ = open_;
+  const auto& seen = std::get<Prompt>(fact.value);
+  const PromptSeen now{console_, seen.state, seen.code};
+  if (now == prompt_) return;
+  prompt_ = now;
+  events_.emplace_back(now);
+  if (now.console == Console::gliderdos && now.state == 'A')
+    events_.emplace_back(AbortSeen{"GliderDos A " + std::to_string(now.code)});
 }
 
 }  // namespace glidehelm::protocol

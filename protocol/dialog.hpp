@@ -1,158 +1,104 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <string_view>
-#include <variant>
 #include <vector>
 
-#include "core/base/expected.hpp"
-#include "core/base/time.hpp"
-#include "core/model/surfacing.hpp"
-#include "protocol/line_splitter.hpp"
+#include "protocol/accept_fix.hpp"
+#include "protocol/dialog_event.hpp"
+#include "protocol/dialog_facts.hpp"
 
 namespace glidehelm::protocol {
 
-/// One of the four location lines, complete, as printed.
-struct LocationLine {
-  std::string lat, lon;  ///< texts: `5949.127`, `69696969.000`
-  char lat_letter{'N'}, lon_letter{'E'};
-  double age_s{};
-  int line{};  ///< of the stream, from 1
-  friend bool operator==(const LocationLine&, const LocationLine&) = default;
-};
-
-struct SensorLine {
-  double value{};
-  std::string unit;
-  double age_s{};
-  friend bool operator==(const SensorLine&, const SensorLine&) = default;
-};
-
-struct WaypointLine {
-  std::string lat, lon;  ///< latitude first, unlike a mafile
-  double range_m{}, bearing_deg{};
-  friend bool operator==(const WaypointLine&, const WaypointLine&) = default;
-};
-
-/// What one block said: facts as printed, sentinels and stale values included. `accept_fix` decides what they are worth.
-struct SurfaceBlock {
-  enum class Kind {
-    connection,  ///< printed at once when the console opens
-    at_surface,  ///< from `Glider X at surface.`
-    other,       ///< `where` and its like: a position report, no surfacing (S8)
-  } kind{Kind::other};
-  std::string vehicle;  ///< as printed; empty when not printed
-  std::optional<GliderTime> curr_time;
-  std::optional<long> mission_time_s;
-  std::optional<LocationLine> dead_reckoned, too_far, invalid, gps;
-  std::map<std::string, SensorLine> sensors;
-  std::string mission, mission_number, segment;
-  std::optional<model::SurfaceReason> because;
-  std::optional<WaypointLine> waypoint;
-  bool water_complete{};  ///< `Water Velocity Calculations COMPLETE`
-  std::optional<int> until_diving_s;
-  int first_line{};
-  Instant heard;  ///< when its GPS line was complete; of its first line without one
-  friend bool operator==(const SurfaceBlock&, const SurfaceBlock&) = default;
-};
-
-struct ConnectionOpened {
-  friend bool operator==(ConnectionOpened, ConnectionOpened) = default;
-};
-struct NameHeard {
-  std::string name;
-  friend bool operator==(const NameHeard&, const NameHeard&) = default;
-};
-/// A block that is worth reading: a connection block when its sensors end, an at-surface block at `Time until diving`, any block with
-/// a fix when another begins or the line falls silent.
-struct BlockRead {
-  SurfaceBlock block;
-  friend bool operator==(const BlockRead&, const BlockRead&) = default;
-};
-/// `Time until diving` outside of a block that was read with it.
-struct WindowHeard {
-  int seconds{};
-  friend bool operator==(const WindowHeard&, const WindowHeard&) = default;
-};
-struct WindowExtended {
-  friend bool operator==(WindowExtended, WindowExtended) = default;
-};
-struct MissionResumed {
-  friend bool operator==(MissionResumed, MissionResumed) = default;
-};
-struct MissionEnded {
-  friend bool operator==(MissionEnded, MissionEnded) = default;
-};
-struct DockserverBlock {
-  std::string text;  ///< from `<dockserver` on, without the end tag
-  friend bool operator==(const DockserverBlock&, const DockserverBlock&) = default;
-};
-struct TransferStarted {
-  std::string file;
-  friend bool operator==(const TransferStarted&, const TransferStarted&) = default;
-};
-struct TransferDone {
-  std::string file;
-  friend bool operator==(const TransferDone&, const TransferDone&) = default;
-};
-struct MafilesReread {
-  friend bool operator==(MafilesReread, MafilesReread) = default;
-};
-
-using DialogEvent = std::variant<ConnectionOpened, NameHeard, BlockRead, WindowHeard, WindowExtended, MissionResumed,
-                                 MissionEnded, DockserverBlock, TransferStarted, TransferDone, MafilesReread>;
-
+/// What a reader has seen so far. All count lines except the last two.
 struct DialogCounts {
-  std::uint64_t connections{}, at_surface_blocks{}, gps_lines{}, gps_sentinels{}, sensor_lines{}, damaged_lines{},
-      dockserver_blocks{}, discarded_bytes{};
+  std::uint64_t connections{};
+  std::uint64_t at_surface_blocks{};  ///< `Glider X at surface.`
+  std::uint64_t gps_lines{};          ///< complete `GPS Location:` lines, sentinels and reprints included
+  std::uint64_t sensor_lines{};       ///< complete ones
+  std::uint64_t damaged_lines{};      ///< match in part, or were cut by the end of the connection
+  std::uint64_t dockserver_blocks{};
+  std::uint64_t long_lines{};  ///< beyond 4 KiB
+  std::uint64_t discarded_bytes{};
   friend bool operator==(const DialogCounts&, const DialogCounts&) = default;
 };
 
-/// Reads a dialog from bytes in any chunking (slocum.md 6.1, R1–R7): same bytes, same events. Bounded memory: lines of 4 KiB,
-/// dockserver blocks of 64 KiB, 256 sensors a block; beyond that bytes are discarded and counted. Linear. Fields bind to the most recent
-/// `Curr Time`; a line that matches only in part is damaged, counted and used for nothing.
-class DialogReader {
+/// Reads the surface dialog of one line: bytes in, events out, the same events for every chunking (slocum.md R1).
+///
+/// A block is given (BlockRead)
+///  - of a connection, as soon as it is complete: at the first line behind its sensors that is neither blank nor noise
+///    (so that a GliderDos prompt is known when it is given), or at `flush_idle`;
+///  - at the surface, at its `Time until diving` line;
+///  - in any case before the next block begins, at `flush_idle` and at `end` with what is there, when it has a
+///    `GPS Location:` line.
+/// Nothing is given of a block without one. What a block says belongs to the `Curr Time` in it; a location that comes
+/// where another block must have begun starts one without a time. Partial state ends at a connection border.
+///
+/// Memory is bounded by one line (4 KiB), one dockserver block (64 KiB) and one surface block. Time is linear.
+class DialogReader final : private LineSink {
  public:
-  /// `heard`: our clock when the bytes came.
+  DialogReader();
+  explicit DialogReader(const DialogWords& words);
+
+  /// `heard` is our clock when these bytes came.
   std::vector<DialogEvent> append(std::string_view bytes, Instant heard);
-  /// The line has been silent for a while: gives a block that waits for its end.
+  /// The line has been silent for a moment: understands a prompt that has no line end and gives the block as it stands.
   std::vector<DialogEvent> flush_idle(Instant heard);
-  /// The connection ended: likewise; a line without an end is dropped.
+  /// The connection ended: gives the block as it stands, drops the unfinished line, and starts afresh.
   std::vector<DialogEvent> end(Instant heard);
 
-  [[nodiscard]] const DialogCounts& counts() const { return counts_; }
-  [[nodiscard]] int line() const { return line_; }
+  [[nodiscard]] DialogCounts counts() const;
 
  private:
-  void take_line(std::string_view line, Instant heard);
-  bool take_fact(std::string_view line, Instant heard);
-  bool take_location(std::string_view line, Instant heard);
-  bool take_sensor(std::string_view line);
-  bool take_event(std::string_view line);
-  void begin(SurfaceBlock::Kind kind, Instant heard);
+  void take_line(const Line& line) override;
+  void take_block(DockserverBlock block) override;
+  [[nodiscard]] bool join_with_last(const Line& line);
+  [[nodiscard]] bool apply_all();
+  void apply(Fact& fact);
+  void apply_damaged(Say say);
+  void note_damage(std::string_view text);
+  [[nodiscard]] bool ends_connection_block(std::string_view text) const;
+
+  void carrier(const Fact& fact);
+  void open_connection();
+  void hear_name(const std::string& name);
+  void begin_block(bool at_surface);
+  void begin_block_after_time();
+  [[nodiscard]] bool has_location() const;
+  void finish_block();
   void give_block();
+  void locate(Say say, Location* location);
+  void read_sensor(SensorReading reading);
+  void window(double seconds);
+  void resume(MissionResumed::By by);
+  void end_mission(std::string cause);
+  void prompt(const Fact& fact);
 
   LineSplitter splitter_;
-  SurfaceBlock block_;
-  bool open_{}, given_{};  ///< a block is open; it was given already
-  bool console_{}, first_{true}, shell_{};
-  int line_{};
+  std::shared_ptr<const FactFinder> finder_;
+  std::vector<DialogEvent> events_;
+  std::vector<Fact> facts_;  ///< of the line that is read
+  Instant heard_;
+  int line_{};  ///< number of the line that is read
   DialogCounts counts_;
-  std::vector<DialogEvent> out_;
-};
 
-/// Limits of the rules that need no memory.
-struct FixLimits {
-  double oldest_s{1200};
-  friend bool operator==(const FixLimits&, const FixLimits&) = default;
-};
+  // the line before, as long as it may be the first half of a line that a dockserver block tore apart
+  std::string last_text_;
+  bool last_damaged_{};
 
-/// S1–S4 and S7, as far as they need no memory: a surfacing from a block, or the refusal that names the rule. `glider` is the name heard on
-/// this connection. A block without a GPS line gives a refusal too (rule S3).
-Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const std::string& glider,
-                                                      const FixLimits& limits = {});
+  // the connection
+  enum class Greeting { none, carrier, console } greeting_{};
+  std::string name_;
+  WaterState water_{};
+  Console console_{};
+  PromptSeen prompt_;
+  bool resumed_{}, ended_{};
+
+  // the block
+  bool open_{}, changed_{};
+  SurfaceBlock block_;
+};
 
 }  // namespace glidehelm::protocol

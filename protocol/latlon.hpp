@@ -1,39 +1,57 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "core/base/expected.hpp"
 #include "core/base/geo.hpp"
 
-/// Slocum text ↔ types, from bytes to bytes. No sockets, no planning, no files.
+/// Slocum text to types and back, from bytes to bytes. Not here: sockets, files, clocks, planning.
 namespace glidehelm::protocol {
 
-/// Why a text is no coordinate, in a pilot's words: what was found and what is allowed.
-struct BadCoordinate {
-  enum class Why { not_a_number, sentinel, minutes, range } why{};
-  std::string text;  ///< as found
-  std::string message;
-  friend bool operator==(const BadCoordinate&, const BadCoordinate&) = default;
-};
+/// Coordinates are written as sign · (100·degrees + minutes); four decimals of a minute are 0.19 m of latitude. All
+/// writing goes through whole units of 1e-4 minute, so that 59.99996′ carries into the next degree and the sign
+/// survives at 0 degrees (slocum.md 2.5).
+inline constexpr std::int64_t kUnitsPerMinute = 10'000;
+inline constexpr std::int64_t kUnitsPerDegree = 60 * kUnitsPerMinute;
+
+/// From this size on a number is no coordinate: 69696969 means "never set" (slocum.md 1.2).
+inline constexpr double kSentinel = 9e6;
 
 enum class Axis { latitude, longitude };
 
-/// Reads degrees and minutes as a Slocum writes them: sign · (100·degrees + minutes), `-11741.800`, `801`, `228.117`, `-0030.5`
-/// (slocum.md 2.5). By arithmetic, never by counting digits. Minutes below 60, |latitude| ≤ 90, |longitude| ≤ 180; a magnitude
-/// of 9e6 and more is the sentinel of a value never set. Degrees.
-Expected<double, BadCoordinate> degrees_from_ddmm(std::string_view text, Axis axis);
+/// A text that is not a coordinate, with what was found.
+struct NoCoordinate {
+  enum class Why {
+    not_a_number,  ///< not [+-]digits[.digits]
+    sentinel,      ///< ≥ 9e6: the glider has never had this value
+    minutes,       ///< 60 minutes or more
+    range,         ///< |latitude| > 90° or |longitude| > 180°
+  } why{};
+  Axis axis{};
+  std::string found;
+  [[nodiscard]] std::string message() const;
+  friend bool operator==(const NoCoordinate&, const NoCoordinate&) = default;
+};
 
-/// A position of a goto list or a dialog from its two texts.
-Expected<GeoPoint, BadCoordinate> point_from_ddmm(std::string_view lat, std::string_view lon);
+/// `[+-]DDMM.mmmm` as signed degrees: any number of digits before the point (`801` is 8°01′, `054.00` 0°54′, `228.117`
+/// 2°28.117′) and after it; the first nine decimals of a minute count. Exact in integers up to the final division.
+Expected<double, NoCoordinate> degrees_from_ddmm(std::string_view text, Axis axis);
+Expected<Latitude, NoCoordinate> latitude_from_ddmm(std::string_view text);
+Expected<Longitude, NoCoordinate> longitude_from_ddmm(std::string_view text);
 
-/// The same number in units of 1e-4 minute, rounded half away from zero: what a goto list can hold (0.19 m). 59.99996 minutes carry
-/// into the next degree here and nowhere else.
-std::int64_t ten_thousandths_of_minute(double degrees);
+/// Nearest whole number of 1e-4 minutes; halves away from zero. Precondition: finite, |degrees| ≤ 360.
+std::int64_t minute_units(double degrees);
 
-/// `%.4f` of DDMM.mmmm, sign kept at zero degrees: `-0030.5000`, `2917.0020`, `-11741.8000`.
-std::string ddmm_text(double degrees);
+/// `%.4f` of sign · (100·degrees + minutes): `-11741.8000`, `-30.5000` for 0°30.5′ S. Zero has no sign.
+std::string ddmm(Latitude lat);
+/// As above; −180° is written `-18000.0000`.
+std::string ddmm(Longitude lon);
+/// The text of a number of 1e-4 minutes.
+std::string ddmm_from_units(std::int64_t units);
+
+/// The dialog's `%9.3f`: exactly three decimals, no '+', no exponent. Says nothing about range.
+bool is_dialog_coordinate(std::string_view text);
 
 }  // namespace glidehelm::protocol

@@ -173,7 +173,7 @@ const Fields<AnalyticDraft>& analytic_fields() {
     f.maybe_number({"time_scale_s", "T: seconds to one unit of time", false, "L/V"}, &A::time_scale, 1,
                    above_zero(1e10));
     f.time({"t0", "when the time of the field is 0", false, "the start time"}, &A::t0);
-    f.flag({"south", "the signs of the southern hemisphere (Thesis 5.4–5.5)"}, &A::south);
+    f.flag({"south", "both components change sign, as on the southern hemisphere (Thesis 5.4–5.5)"}, &A::south);
     f.custom({"params", "parameters of the kind; in brackets the value when left out"}, params_fields().shape(), "",
              read_params, print_params);
     return f;

@@ -4,6 +4,7 @@
 
 #include "config/mission.hpp"
 #include "core/base/utc.hpp"
+#include "core/ocean/analytic.hpp"
 #include "tests/support/config.hpp"
 
 using namespace glidehelm;
@@ -74,6 +75,28 @@ TEST_CASE("every analytic kind is read with its parameters") {
   const auto c = read(analytic(row.kind));
   REQUIRE(c.analytic.size() == 1);
   CHECK(c.analytic[0].params == row.params);
+}
+
+TEST_CASE("core/ocean makes a field of every kind that is read, with the same defaults") {
+  for (const char* kind : {"constant, params: {u: 0, v: 0}", "source", "sink", "solid-body", "shear", "double-eddy",
+                           "stuart", "tiled", "jet", "gaussians, params: {list: [[1, 0, 0, 1, 0, 1, 0, 0]]}"}) {
+    CAPTURE(kind);
+    const auto c = read(analytic(std::string{"kind: "} + kind));
+    ocean::AnalyticSpec spec;
+    spec.kind = c.analytic[0].kind;
+    spec.origin = c.analytic[0].origin;
+    spec.length_scale = c.analytic[0].length_scale;
+    spec.speed_scale = c.analytic[0].speed_scale;
+    spec.gaussians = c.analytic[0].gaussians;
+    const auto by_its_own_defaults = ocean::AnalyticField::make(spec, Instant{});
+    spec.params = c.analytic[0].params;
+    const auto by_ours = ocean::AnalyticField::make(spec, Instant{});
+    REQUIRE(by_ours);
+    REQUIRE(by_its_own_defaults);
+    const auto place = geo_point(28.3, -15.4);
+    CHECK(by_ours->sample(place, Depth{}, 1000.0)->current ==
+          by_its_own_defaults->sample(place, Depth{}, 1000.0)->current);
+  }
 }
 
 TEST_CASE("gaussians are rows of eight numbers with a covariance that is one") {

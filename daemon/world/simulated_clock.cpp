@@ -1,6 +1,7 @@
 #include "daemon/world/simulated_clock.hpp"
 
 #include <charconv>
+#include <utility>
 
 namespace glidehelm::world {
 
@@ -19,18 +20,27 @@ bool read_number(std::string_view text, T& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
+constexpr int kTries = 300;
+constexpr std::chrono::milliseconds kBetweenTries{200};
 constexpr std::size_t kLongestLine = 64U << 10;
 
 }  // namespace
 
-SimulatedClock::SimulatedClock(Net& net, std::string socket, std::function<void(std::string_view)> lost)
-    : net_{net}, socket_{std::move(socket)}, lost_{std::move(lost)} {}
+SimulatedClock::SimulatedClock(Net& net, Clock& wall, std::string socket, std::function<void(std::string_view)> lost)
+    : net_{net}, wall_{wall}, socket_{std::move(socket)}, lost_{std::move(lost)} {}
 
 void SimulatedClock::start(std::function<void()> ready) {
   ready_ = std::move(ready);
-  net_.connect_unix(socket_, [this](Expected<std::shared_ptr<Stream>, NetError> stream) {
+  connect(kTries);
+}
+
+void SimulatedClock::connect(int tries_left) {
+  net_.connect_unix(socket_, [this, tries_left](Expected<std::shared_ptr<Stream>, NetError> stream) {
     if (!stream) {
-      lost_(stream.error().message());
+      if (tries_left == 0)
+        lost_(stream.error().message());
+      else
+        wall_.call_at(wall_.tick() + kBetweenTries, [this, tries_left] { connect(tries_left - 1); });
       return;
     }
     stream_ = std::move(stream).value();
@@ -51,41 +61,38 @@ void SimulatedClock::set_busy(bool busy) {
 
 void SimulatedClock::take_bytes(std::string_view bytes) {
   partial_.append(bytes);
-  std::size_t begin = 0;
-  for (auto end = partial_.find('\n'); end != std::string::npos; end = partial_.find('\n', begin)) {
-    take_line(std::string_view{partial_}.substr(begin, end - begin));
-    begin = end + 1;
+  for (auto end = partial_.find('\n'); stream_ && end != std::string::npos; end = partial_.find('\n')) {
+    const auto line = partial_.substr(0, end);
+    partial_.erase(0, end + 1);
+    take_line(line);
   }
-  partial_.erase(0, begin);
-  if (partial_.size() > kLongestLine) lost_("the simulator sent a line without end");
+  if (partial_.size() > kLongestLine) lose("the simulator sent a line without end");
 }
 
 void SimulatedClock::take_line(std::string_view line) {
   const std::string whole{line};
+  const auto nonsense = [&] { lose("the simulator sent: " + whole.substr(0, 200)); };
   if (!greeted_) {
     greeted_ = line == "glidersim-clock 1";
-    if (!greeted_) lost_("the simulator speaks another version: " + whole);
+    if (!greeted_) lose("the simulator speaks another version: " + whole.substr(0, 200));
     return;
   }
   std::int64_t utc_ms{}, tick_ms{};
-  if (take_word(line) != "run" || !read_number(take_word(line), utc_ms) || !read_number(take_word(line), tick_ms) ||
-      Tick{std::chrono::milliseconds{tick_ms}} < tick_) {
-    lost_("the simulator sent: " + whole);
-    return;
-  }
+  if (take_word(line) != "run" || !read_number(take_word(line), utc_ms) || !read_number(take_word(line), tick_ms))
+    return nonsense();
+  const Tick tick{std::chrono::milliseconds{tick_ms}};
+  if (running_ || tick < tick_) return nonsense();  // a second `run` before our answer, or time that goes back
   while (!line.empty()) {
     const auto pair = take_word(line);
     const auto equals = pair.rfind('=');
     std::uint64_t total{};
-    if (equals == std::string_view::npos || !read_number(pair.substr(equals + 1), total)) {
-      lost_("the simulator sent: " + whole);
-      return;
-    }
+    if (equals == std::string_view::npos || !read_number(pair.substr(equals + 1), total)) return nonsense();
     sent_[std::string{pair.substr(0, equals)}] = total;
   }
   utc_ = Instant{std::chrono::milliseconds{utc_ms}};
-  tick_ = Tick{std::chrono::milliseconds{tick_ms}};
+  tick_ = tick;
   running_ = true;
+  if (on_run_) on_run_();
   if (ready_) std::exchange(ready_, nullptr)();
   settle();
 }
@@ -96,7 +103,7 @@ void SimulatedClock::settle() {
   settling_ = true;
   while (auto then = queue_.take_due(tick_)) (*then)();
   settling_ = false;
-  if (busy_ || !running_) return;
+  if (busy_ || !running_ || !stream_) return;
   for (const auto& [line, total] : sent_)
     if (handled_[line] < total) return;
   running_ = false;

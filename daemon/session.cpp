@@ -180,11 +180,6 @@ void Session::hear(const protocol::DialogEvent& event) {
     void operator()(const protocol::MissionEnded& e) const {
       session.desk_.log.alert(session.entry_.name, "the dialog says that the glider's mission has ended: " + e.cause);
     }
-    void operator()(const protocol::AbortSeen& e) const {
-      session.desk_.log.alert(session.entry_.name, "the dialog tells of an abort: " + e.cause);
-    }
-    void operator()(const protocol::PromptSeen&) const {}
-    void operator()(const protocol::KeyHeard&) const {}
     void operator()(const protocol::DockserverBlock&) const {}
     void operator()(const protocol::TransferStarted& e) const {
       if (lower(e.file).ends_with(session.emitter_->file_name())) session.emitter_->set_transfer_open(true);

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <map>
+#include <charconv>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/base/text.hpp"
@@ -22,24 +22,46 @@ constexpr std::size_t kLargestForeign = 64U << 10;
 constexpr const char* kStageName = ".glidehelm";
 constexpr const char* kMarkerName = ".glidersim";
 constexpr const char* kHoldName = "HOLD";
+constexpr const char* kEpochName = "epoch";
 
-std::string parent_of(const std::string& path) {
+std::string parent_of(std::string path) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
   const auto slash = path.find_last_of('/');
   if (slash == std::string::npos) return ".";
   return slash == 0 ? "/" : path.substr(0, slash);
 }
 
-/// Names that the glider would take for our list: DOS knows no case.
-bool is_slot_name(std::string_view found, std::string_view name) { return equal_without_case(found, name); }
+bool same_folder(const world::FileStat& a, const world::FileStat& b) {
+  return a.device == b.device && a.inode == b.inode;
+}
+
+class StandingClock final : public world::Clock {
+ public:
+  StandingClock(Instant utc, Tick tick) : utc_{utc}, tick_{tick} {}
+  [[nodiscard]] Instant utc() const override { return utc_; }
+  [[nodiscard]] Tick tick() const override { return tick_; }
+  world::TimerId call_at(Tick, std::function<void()>) override { return 0; }
+  void cancel(world::TimerId) override {}
+  [[nodiscard]] bool simulated() const override { return false; }
+
+ private:
+  Instant utc_;
+  Tick tick_;
+};
+
+/// Bytes that are no UTF-8 must not stop a record: they are replaced, the hash beside them is exact.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 }  // namespace
 
 Expected<std::unique_ptr<Emitter>, std::string> Emitter::open(world::Files& files, const std::string& to_glider,
                                                               int slot, bool need_marker) {
   const auto wrong = [&](const std::string& what) { return unexpected("to_glider " + to_glider + ": " + what); };
-  std::unique_ptr<Emitter> emitter{new Emitter};
+  std::unique_ptr<Emitter> emitter{new Emitter{files}};
   emitter->set_slot(slot);
-  auto target = files.open_folder(to_glider);
+  emitter->target_path_ = to_glider;
+  while (emitter->target_path_.size() > 1 && emitter->target_path_.back() == '/') emitter->target_path_.pop_back();
+  auto target = files.open_folder(emitter->target_path_);
   if (!target)
     return wrong(target.error().code == ELOOP || target.error().code == ENOTDIR
                      ? "is no folder (a symbolic link is not followed)"
@@ -48,47 +70,74 @@ Expected<std::unique_ptr<Emitter>, std::string> Emitter::open(world::Files& file
   const auto target_stat = emitter->target_->stat_self();
   if (!target_stat) return wrong(target_stat.error().message());
   emitter->target_stat_ = *target_stat;
-  const auto beside = parent_of(to_glider);
+  const auto beside = parent_of(emitter->target_path_);
   if (need_marker && !files.stat(beside + "/" + kMarkerName))
     return wrong("the clock is simulated and glidersim did not make " + beside + " (no file " + kMarkerName +
                  " in it): nothing is written there");
-  auto stage = files.make_folder(beside + "/" + kStageName, 0750);
-  if (!stage) return wrong("the staging folder beside it cannot be made: " + stage.error().message());
-  emitter->stage_ = std::move(stage).value();
-  const auto stage_stat = emitter->stage_->stat_self();
-  if (!stage_stat) return wrong(stage_stat.error().message());
-  if (stage_stat->device != target_stat->device)
-    return wrong("lies on another file system than " + emitter->stage_->path() +
-                 ": a file cannot be moved between them in one step");
-  auto lock = emitter->stage_->lock("lock");
-  if (!lock)
-    return wrong(lock.error().code == EAGAIN
-                     ? "another process flies this glider (it holds " + emitter->stage_->path() + "/lock)"
-                     : lock.error().message());
-  emitter->lock_ = std::move(lock).value();
+  if (auto problem = emitter->open_stage(beside)) return wrong(*problem);
+  if (auto problem = emitter->count_epoch()) return wrong(*problem);
   // Can a file be moved in and out? Found out now, not at 3 a.m.
-  static_cast<void>(emitter->stage_->unlink("probe"));
-  if (auto probe = emitter->stage_->create("probe", "", 0640); !probe)
-    return wrong("the staging folder is not writable: " + probe.error().message());
-  const std::string probe_name = ".glidehelm-probe";
-  auto moved = emitter->stage_->rename_new("probe", *emitter->target_, probe_name);
-  if (!moved && moved.error().code == EEXIST) moved = Done{};
-  if (!moved) {
-    static_cast<void>(emitter->stage_->unlink("probe"));
-    return wrong("a file cannot be moved into it: " + moved.error().message());
+  if (auto moves = emitter->stage_->check_moves_to(*emitter->target_); !moves) {
+    const auto code = moves.error().code;
+    return wrong(code == EXDEV
+                     ? "lies on another mount than " + emitter->stage_path_ +
+                           ": a file cannot be moved between them in one step (one ReadWritePaths= entry must "
+                           "hold both)"
+                 : code == EINVAL || code == ENOSYS
+                     ? "its file system cannot exchange two names in one step (renameat2): " + moves.error().message()
+                     : "a file cannot be moved into it: " + moves.error().message());
   }
-  if (auto gone = emitter->target_->unlink(probe_name); !gone)
-    return wrong("a file of ours cannot be removed from it: " + gone.error().message());
-  static_cast<void>(emitter->stage_->unlink("probe"));
   return emitter;
+}
+
+std::optional<std::string> Emitter::open_stage(const std::string& beside) {
+  stage_path_ = (beside == "/" ? "" : beside) + "/" + kStageName;
+  auto stage = files_.make_folder(stage_path_, 0750);
+  if (!stage) return "the staging folder beside it cannot be made: " + stage.error().message();
+  stage_ = std::move(stage).value();
+  const auto stat = stage_->stat_self();
+  if (!stat) return stat.error().message();
+  stage_stat_ = *stat;
+  if (stat->device != target_stat_.device)
+    return "lies on another file system than " + stage_path_ + ": a file cannot be moved between them in one step";
+  if ((stat->mode & 0002U) != 0) return "everybody may write into the staging folder " + stage_path_;
+  auto lock = stage_->lock("lock");
+  if (!lock && lock.error().code == EAGAIN)
+    return "another process flies this glider (" + stage_path_ + "/lock is held by another process)";
+  if (!lock) return "the staging folder cannot be used: " + lock.error().message();
+  lock_ = std::move(lock).value();
+  return std::nullopt;
+}
+
+/// One more than the last process that flew this glider. Under the lock, so nobody counts at the same time.
+std::optional<std::string> Emitter::count_epoch() {
+  const auto text = stage_->read(kEpochName, 64);
+  if (!text && text.error().code != ENOENT) return "its epoch cannot be read: " + text.error().message();
+  if (text) {
+    const auto digits = trimmed(*text);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), epoch_);
+    if (error != std::errc{} || end != digits.data() + digits.size())
+      return stage_path_ + "/" + kEpochName + " holds no number; remove it when no other daemon flies this glider";
+  }
+  ++epoch_;
+  const std::string fresh = std::string{kEpochName} + ".tmp";
+  static_cast<void>(stage_->unlink(fresh));
+  const auto made = stage_->create(fresh, std::to_string(epoch_) + "\n", 0640);
+  if (!made) return "the staging folder is not writable: " + made.error().message();
+  const auto moved = stage_->rename_over(fresh, *stage_, kEpochName);
+  if (!moved) return "the staging folder is not writable: " + moved.error().message();
+  const auto synced = stage_->sync();
+  if (!synced) return "the staging folder is not writable: " + synced.error().message();
+  return std::nullopt;
 }
 
 void Emitter::set_slot(int slot) { name_ = fmt::format("goto_l{:02}.ma", slot); }
 
 world::FileResult<std::string> Emitter::stage(std::string_view bytes, std::uint64_t number) {
-  const auto staged = fmt::format(".{}.{}.tmp", name_, number);
-  static_cast<void>(stage_->unlink(staged));  // left by a process that crashed with the same number
+  const auto staged = fmt::format(".{}.{}-{}.tmp", name_, epoch_, number);
   if (auto made = stage_->create(staged, bytes, 0640); !made) return unexpected(made.error());
+  // The name is durable too: an INTENT whose staged file is neither here nor in to-glider then means that it was taken.
+  if (auto synced = stage_->sync(); !synced) return unexpected(synced.error());
   return staged;
 }
 
@@ -98,11 +147,20 @@ world::FileResult<std::unique_ptr<world::OpenFile>> Emitter::open_staged(const s
 
 void Emitter::discard(const std::string& staged) { static_cast<void>(stage_->unlink(staged)); }
 
-std::optional<Sha256> Emitter::hash_in_target(std::string* problem) {
-  const auto content = target_->read(name_, kLargestForeign);
-  if (content) return Sha256::of(std::string_view{*content});
-  if (problem != nullptr && content.error().code != ENOENT) *problem = content.error().message();
-  return std::nullopt;
+Emitter::Found Emitter::look(world::Folder& folder, const std::string& name) {
+  const auto content = folder.read(name, kLargestForeign);
+  if (content) return {Found::What::file, Sha256::of(std::string_view{*content}), ""};
+  switch (content.error().code) {
+    case ENOENT:
+      return {};
+    case EINVAL:
+    case ELOOP:
+    case EFBIG:
+    case ENXIO:
+      return {Found::What::strange, {}, content.error().message()};
+    default:
+      return {Found::What::problem, {}, content.error().message()};
+  }
 }
 
 FolderView Emitter::inspect() {
@@ -110,40 +168,57 @@ FolderView Emitter::inspect() {
   if (!names) return {FolderView::What::unreadable, names.error().message()};
   FolderView view;
   for (const auto& found : *names) {
-    if (!is_slot_name(found, name_)) continue;
+    if (!equal_without_case(found, name_)) continue;  // DOS knows no case: the glider would take any of them for ours
     const auto stat = target_->stat(found);
+    if (!stat && stat.error().code == ENOENT) continue;  // taken since it was listed
     std::string what = found;
     if (stat)
       what += fmt::format(" of uid {}, written {}", stat->owner,
                           utc_text(Instant{std::chrono::milliseconds{stat->modified_ns / 1'000'000}}));
     if (found == name_ && stat && stat->regular && stat->links == 1) {
-      std::string problem;
-      const auto hash = hash_in_target(&problem);
-      if (hash && (hash == ours_ || std::find(ours_before_.begin(), ours_before_.end(), *hash) != ours_before_.end())) {
+      const auto content = look(*target_, found);
+      if (content.what == Found::What::absent) continue;
+      const auto ours = ours_.find(name_);
+      if (ours != ours_.end() && content.is(ours->second)) {
         if (view.what == FolderView::What::nothing) view = {FolderView::What::ours, what};
         continue;
       }
-      if (hash) what += ", sha256 " + hash->hex().substr(0, 12);
+      what += content.what == Found::What::file ? ", sha256 " + content.hash.hex().substr(0, 12)
+                                                : ", unreadable: " + content.problem;
     }
     view = {FolderView::What::foreign, what + " was not written by us"};
   }
   return view;
 }
 
-/// E5: everything that may have changed since the verdict, cheapest and last.
-std::optional<std::string> Emitter::objection(const EmissionOrder& order, Tick now) {
-  if (now >= order.deadline) return "the window is over";
-  const auto here = target_->stat_self();
-  if (!here || here->links == 0 || here->inode != target_stat_.inode || here->device != target_stat_.device)
-    return "the to-glider folder was replaced";
-  if (stage_->stat(kHoldName))
-    return std::string{"the file "} + kHoldName + " in " + stage_->path() + " forbids every emission";
-  if (transfer_open_ && order.replaces) return "a transfer to the glider has begun: nothing is exchanged any more";
+/// E5: everything that may have changed since the verdict, cheapest last. What cannot be checked forbids.
+std::optional<std::string> Emitter::objection(const EmissionOrder&) {
+  if (transfer_open_) return "a transfer to the glider is open: nothing is changed under it";
+  const auto hold = stage_->stat(kHoldName);
+  if (hold) return std::string{"the file "} + kHoldName + " in " + stage_path_ + " forbids every emission";
+  if (hold.error().code != ENOENT) return hold.error().message();
+  const auto epoch = stage_->read(kEpochName, 64);
+  if (!epoch || *epoch != std::to_string(epoch_) + "\n") return "another process has taken this glider over (epoch)";
+  // Both folders are still what their paths lead to: somebody may have moved them away and made new ones.
+  const auto target = files_.open_folder(target_path_);
+  const auto target_stat = target ? (*target)->stat_self() : world::FileResult<world::FileStat>{target_stat_};
+  if (!target || !target_stat || !same_folder(*target_stat, target_stat_))
+    return "the to-glider folder was replaced since the start";
+  const auto stage = files_.open_folder(stage_path_);
+  const auto stage_stat = stage ? (*stage)->stat_self() : world::FileResult<world::FileStat>{stage_stat_};
+  if (!stage || !stage_stat || !same_folder(*stage_stat, stage_stat_) || stage_stat->owner != stage_stat_.owner ||
+      stage_stat->mode != stage_stat_.mode)
+    return "the staging folder was replaced or its rights changed since the start";
   return std::nullopt;
 }
 
 Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,
                        Journal& journal, Instant utc, Tick now) {
+  return emit(file, staged, order, journal, StandingClock{utc, now});
+}
+
+Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,
+                       Journal& journal, const world::Clock& clock) {
   if (file.name() != name_)
     return {Outcome::aborted, "the file is named " + file.name() + ", the slot's name is " + name_, false};
   const auto bytes = stage_->read(staged, kLargestForeign);
@@ -152,6 +227,8 @@ Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& stag
   const auto before = inspect();
   if (before.what == FolderView::What::foreign) return {Outcome::foreign_file, before.detail, false};
   if (before.what == FolderView::What::unreadable) return {Outcome::aborted, before.detail, false};
+  if (auto why = objection(order)) return {Outcome::aborted, *why, false};
+  if (clock.tick() >= order.deadline) return {Outcome::late, "the window is over", false};
   const bool exchange = before.what == FolderView::What::ours;
 
   Json intent{{"glider", order.glider},
@@ -161,142 +238,131 @@ Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& stag
               {"length", file.bytes().size()},
               {"crc32c", crc32c(std::string_view{file.bytes()})},
               {"sha256", file.verdict().of.hex()},
-              {"replaces", exchange && hash_in_target(nullptr) ? hash_in_target(nullptr)->hex() : "absent"},
+              {"replaces", exchange ? ours_.at(name_).hex() : "absent"},
+              {"replacement", order.replaces},
               {"staged", staged},
+              {"folder_epoch", epoch_},
+              {"deadline_ms", order.deadline.time_since_epoch().count()},
               {"bytes", file.bytes()}};
   Json margins = Json::array();
-  for (const auto& m : file.verdict().margins) margins.push_back({{"rule", m.rule}, {"holds", m.holds}});
+  for (const auto& m : file.verdict().margins) {
+    Json margin{{"rule", m.rule}, {"holds", m.holds}};
+    if (std::isfinite(m.found)) margin["found"] = m.found;
+    if (std::isfinite(m.limit)) margin["limit"] = m.limit;
+    if (!m.unit.empty()) margin["unit"] = m.unit;
+    margins.push_back(std::move(margin));
+  }
   intent["margins"] = std::move(margins);
   world::failpoint("before_intent");
-  const auto written = journal.append(RecordType::intent, intent.dump(), utc, now, Journal::Durable::yes);
+  const auto written =
+      journal.append(RecordType::intent, text_of(intent), clock.utc(), clock.tick(), Journal::Durable::yes);
   if (!written) return {Outcome::aborted, written.error().message, written.error().fatal};
   world::failpoint("after_intent");
-  if (auto why = objection(order, now))
-    return abort(journal, *written, order, {now >= order.deadline ? Outcome::late : Outcome::aborted, *why, false}, utc,
-                 now);
-  const auto visible = make_visible(file, staged, order, exchange);
-  if (visible.outcome != Outcome::queued) return abort(journal, *written, order, visible, utc, now);
+  if (auto why = objection(order))
+    return abort(journal, *written, order, staged, {Outcome::aborted, *why, false}, clock);
+  if (clock.tick() >= order.deadline)
+    return abort(journal, *written, order, staged, {Outcome::late, "the window is over", false}, clock);
+  world::failpoint("before_rename");
+  const auto visible = make_visible(file, staged, exchange);
+  if (visible.outcome == Outcome::unknown) return visible;  // its INTENT stays open: the next start looks again
+  if (visible.outcome != Outcome::queued) return abort(journal, *written, order, staged, visible, clock);
   world::failpoint("after_rename");
-  return make_durable(order, file, journal, utc, now, *written);
+  return make_durable(order, file, staged, journal, clock, *written);
 }
 
 /// E6: the one step that others see.
-Emission Emitter::make_visible(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder&,
-                               bool exchange) {
+Emission Emitter::make_visible(const safety::VerifiedFile& file, const std::string& staged, bool exchange) {
+  const auto& ours = file.verdict().of;
   if (!exchange) {
     const auto moved = stage_->rename_new(staged, *target_, name_);
     if (moved) return {Outcome::queued, "", false};
     if (moved.error().code == EEXIST)
       return {Outcome::foreign_file, name_ + " appeared there while ours was being made", false};
+    // An error does not prove that nothing happened.
+    if (look(*target_, name_).is(ours)) return {Outcome::queued, "", false};
     return {Outcome::aborted, moved.error().message(), false};
   }
   const auto swapped = stage_->exchange(staged, *target_, name_);
-  if (!swapped) {
+  if (!swapped && !look(*target_, name_).is(ours)) {
     if (swapped.error().code != ENOENT) return {Outcome::aborted, swapped.error().message(), false};
     return {Outcome::aborted, "our previous file was taken at this moment: the glider may be receiving it", false};
   }
-  const auto out = stage_->read(staged, kLargestForeign);
-  const bool ours = out && (Sha256::of(std::string_view{*out}) == ours_ ||
-                            std::find(ours_before_.begin(), ours_before_.end(), Sha256::of(std::string_view{*out})) !=
-                                ours_before_.end());
-  if (ours) return {Outcome::queued, "", false};
-  const auto back = stage_->exchange(staged, *target_, name_);
+  if (look(*stage_, staged).is(ours_.at(name_))) return {Outcome::queued, "", false};
+  return put_back(staged, name_, ours);
+}
+
+/// What came out of the exchange is somebody else's file: it goes back at once, and durably, before anything else is
+/// said. `ours` is what must come out then.
+Emission Emitter::put_back(const std::string& staged, const std::string& name, const Sha256& ours) {
+  auto back = stage_->exchange(staged, *target_, name);
+  const bool taken = !back && back.error().code == ENOENT;  // ours was taken meanwhile
+  if (taken) back = stage_->rename_new(staged, *target_, name);
   if (!back)
     return {Outcome::unknown,
             "a human's file was swapped out and could not be put back (" + back.error().message() + "): it is " +
-                stage_->path() + "/" + staged,
+                stage_path_ + "/" + keep_aside(staged),
             false};
-  static_cast<void>(file);
-  return {Outcome::foreign_file, name_ + " was changed while ours was being made; it was put back", false};
+  if (const auto problem = sync_both()) return {Outcome::unknown, problem->message(), problem->failed_sync()};
+  if (taken)
+    return {Outcome::unknown,
+            name +
+                " was changed while ours was being made; it was put back, but ours may have been "
+                "taken before",
+            false};
+  if (const auto out = look(*stage_, staged); !out.is(ours) && out.what != Found::What::absent)
+    return {Outcome::unknown,
+            name + " was changed twice while ours was being made; the later file is " + stage_path_ + "/" +
+                keep_aside(staged),
+            false};
+  return {Outcome::foreign_file, name + " was changed while ours was being made; it was put back", false};
+}
+
+/// A file of somebody else that lies in our staging folder gets a name that is never cleaned away.
+std::string Emitter::keep_aside(const std::string& staged) {
+  const auto name = fmt::format("foreign-{}-{}.ma", epoch_, ++kept_);
+  if (!stage_->rename_new(staged, *stage_, name)) return staged;
+  static_cast<void>(stage_->sync());
+  return name;
+}
+
+std::optional<world::FileError> Emitter::sync_both() {
+  for (auto* folder : {target_.get(), stage_.get()})
+    if (auto synced = folder->sync(); !synced) return synced.error();
+  return std::nullopt;
 }
 
 /// E7–E9. An error after the rename cannot be undone quietly.
-Emission Emitter::make_durable(const EmissionOrder& order, const safety::VerifiedFile& file, Journal& journal,
-                               Instant utc, Tick now, std::uint64_t intent) {
-  for (auto* folder : {target_.get(), stage_.get()})
-    if (auto synced = folder->sync(); !synced) return {Outcome::unknown, synced.error().message(), true};
+Emission Emitter::make_durable(const EmissionOrder& order, const safety::VerifiedFile& file, const std::string& staged,
+                               Journal& journal, const world::Clock& clock, std::uint64_t intent) {
+  ours_[name_] = file.verdict().of;
+  if (const auto problem = sync_both()) return {Outcome::unknown, problem->message(), true};
   world::failpoint("after_folder_sync");
   const auto stat = target_->stat(name_);
-  const Json committed{
-      {"glider", order.glider}, {"surfacing", order.surfacing}, {"intent", intent}, {"inode", stat ? stat->inode : 0}};
-  const auto written = journal.append(RecordType::committed, committed.dump(), utc, now, Journal::Durable::yes);
-  if (!written) return {Outcome::unknown, written.error().message, written.error().fatal};
+  const Json committed{{"glider", order.glider},
+                       {"surfacing", order.surfacing},
+                       {"intent", intent},
+                       {"inode", stat ? stat->inode : 0},
+                       {"modified_ns", stat ? stat->modified_ns : 0}};
+  world::failpoint("before_committed");
+  const auto written =
+      journal.append(RecordType::committed, text_of(committed), clock.utc(), clock.tick(), Journal::Durable::yes);
+  if (!written)
+    return {Outcome::unknown, name_ + " is visible but that cannot be recorded: " + written.error().message,
+            written.error().fatal};
   world::failpoint("after_committed");
-  if (ours_) ours_before_.push_back(*ours_);
-  ours_ = file.verdict().of;
   // After an exchange the swapped-out copy lies under the staged name; its bytes are in the journal.
-  const auto names = stage_->list();
-  if (names)
-    for (const auto& name : *names)
-      if (name.ends_with(".tmp")) static_cast<void>(stage_->unlink(name));
-  return {Outcome::queued, fmt::format("{} is queued in {}", name_, target_->path()), false};
+  discard(staged);
+  return {Outcome::queued, fmt::format("{} is queued in {}", name_, target_path_), false};
 }
 
-Emission Emitter::abort(Journal& journal, std::uint64_t intent, const EmissionOrder& order, Emission why, Instant utc,
-                        Tick now) {
+/// A: nothing of ours is visible.
+Emission Emitter::abort(Journal& journal, std::uint64_t intent, const EmissionOrder& order, const std::string& staged,
+                        Emission why, const world::Clock& clock) {
   const Json aborted{{"glider", order.glider}, {"surfacing", order.surfacing}, {"intent", intent}, {"why", why.detail}};
-  const auto written = journal.append(RecordType::aborted, aborted.dump(), utc, now);
+  const auto written = journal.append(RecordType::aborted, text_of(aborted), clock.utc(), clock.tick());
   if (!written) why.fatal = why.fatal || written.error().fatal;
+  discard(staged);
   return why;
-}
-
-std::vector<RecoveredEmission> Emitter::recover(const std::string& glider, const std::vector<JournalRecord>& past,
-                                                Journal& journal, Instant utc, Tick now) {
-  std::map<std::uint64_t, std::string> open;  // INTENTs without an end, by sequence number
-  for (const auto& record : past) {
-    if (record.type != RecordType::intent && record.type != RecordType::committed && record.type != RecordType::aborted)
-      continue;
-    const auto json = Json::parse(record.payload, nullptr, false);
-    if (json.is_discarded() || json.value("glider", "") != glider) continue;
-    if (record.type == RecordType::intent) {
-      Sha256 hash;
-      if (Sha256::from_hex(json.value("sha256", ""), hash)) ours_before_.push_back(hash);
-      open[record.sequence] = record.payload;
-    } else {
-      open.erase(json.value("intent", std::uint64_t{0}));
-    }
-  }
-  std::vector<RecoveredEmission> settled;
-  for (const auto& [sequence, payload] : open) {
-    std::string surfacing;
-    auto emission = settle(payload, journal, utc, now, surfacing);
-    const Json end{{"glider", glider}, {"surfacing", surfacing}, {"intent", sequence}, {"why", emission.detail}};
-    const auto type = emission.outcome == Outcome::queued ? RecordType::committed : RecordType::aborted;
-    const auto written = journal.append(type, end.dump(), utc, now, Journal::Durable::yes);
-    if (!written) emission.fatal = written.error().fatal;
-    settled.push_back({surfacing, emission});
-  }
-  if (const auto names = stage_->list())
-    for (const auto& name : *names)
-      if (name.ends_with(".tmp")) static_cast<void>(stage_->unlink(name));
-  return settled;
-}
-
-/// One INTENT that a crash left open, by what lies in to-glider now. A plan is never finished from the journal.
-Emission Emitter::settle(const std::string& intent_json, Journal&, Instant, Tick, std::string& surfacing) {
-  const auto intent = Json::parse(intent_json, nullptr, false);
-  surfacing = intent.value("surfacing", "");
-  Sha256 wanted;
-  if (!Sha256::from_hex(intent.value("sha256", ""), wanted))
-    return {Outcome::unknown, "the INTENT cannot be read", false};
-  std::string problem;
-  const auto found = hash_in_target(&problem);
-  if (!problem.empty()) return {Outcome::unknown, problem, false};
-  if (found == wanted) {
-    for (auto* folder : {target_.get(), stage_.get()})
-      if (auto synced = folder->sync(); !synced) return {Outcome::unknown, synced.error().message(), true};
-    ours_ = wanted;
-    return {Outcome::queued, fmt::format("{} was visible before the crash and is queued", name_), false};
-  }
-  // Not visible. Still staged: it never was. Gone from both: it was taken between the rename and the crash.
-  const auto staged = stage_->read(intent.value("staged", ""), kLargestForeign);
-  const bool still_staged = staged && Sha256::of(std::string_view{*staged}) == wanted;
-  if (still_staged) return {Outcome::aborted, "the crash came before the file was visible", false};
-  if (!found)
-    return {Outcome::unknown,
-            "the file may have been taken between its rename and the crash; only the dialog's Waypoint: line will tell",
-            false};
-  return {Outcome::foreign_file, name_ + " was written by somebody else since the crash", false};
 }
 
 }  // namespace glidehelm::daemon

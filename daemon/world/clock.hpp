@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 
@@ -10,6 +11,9 @@
 namespace glidehelm::world {
 
 using TimerId = std::uint64_t;
+
+/// Names one run of the machine: ticks of two records compare only when it is equal. All zero: not known, simulated.
+using BootId = std::array<std::uint8_t, 16>;
 
 /// UTC, monotonic time, and timers. Used from the loop's thread only.
 class Clock {
@@ -22,6 +26,7 @@ class Clock {
   virtual void cancel(TimerId id) = 0;  ///< no effect on a timer that fired
   /// True when time is handed in by a simulator: every status and log line then says SIMULATED.
   [[nodiscard]] virtual bool simulated() const = 0;
+  [[nodiscard]] virtual BootId boot() const { return {}; }
 };
 
 }  // namespace glidehelm::world

@@ -19,6 +19,8 @@ struct FileError {
   std::string path;
   int code{};  ///< errno
   [[nodiscard]] std::string message() const;
+  /// fsync or fdatasync failed: what the disk holds is unknown, a second try would lie, the process ends (trust.md K-4).
+  [[nodiscard]] bool failed_sync() const { return operation == "fsync" || operation == "fdatasync"; }
   friend bool operator==(const FileError&, const FileError&) = default;
 };
 template <class T>
@@ -29,6 +31,7 @@ struct FileStat {
   std::int64_t modified_ns{};
   std::uint32_t owner{}, links{};
   bool regular{}, folder{};
+  std::uint32_t mode{};  ///< permission bits, 07777
   friend bool operator==(const FileStat&, const FileStat&) = default;
 };
 
@@ -84,7 +87,12 @@ class Folder {
   /// rename that replaces: for files that only we own (caches, grids).
   [[nodiscard]] virtual FileResult<Done> rename_over(std::string_view name, Folder& to, std::string_view new_name) = 0;
   [[nodiscard]] virtual FileResult<Done> sync() = 0;  ///< fsync of the directory
-  /// Exclusive OFD lock on `name` (created when absent); EAGAIN when somebody holds it.
+  /// May this process move a name from here into `to` and take it out again? Asked without making a name in either:
+  /// EXDEV across mounts, EROFS, EACCES, EINVAL where the file system has no exchange.
+  [[nodiscard]] virtual FileResult<Done> check_moves_to(Folder& to) {
+    return unexpected(FileError{"rename", path() + " to " + to.path(), ENOSYS});
+  }
+  /// Exclusive OFD lock on the regular file `name` (created when absent); EAGAIN when somebody holds it.
   [[nodiscard]] virtual FileResult<std::unique_ptr<Lock>> lock(std::string_view name) = 0;
 };
 

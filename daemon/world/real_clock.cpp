@@ -1,8 +1,11 @@
 #include "daemon/world/real_clock.hpp"
 
+#include <fcntl.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 
 namespace glidehelm::world {
 
@@ -18,6 +21,24 @@ Tick RealClock::tick() const {
   timespec now{};
   clock_gettime(CLOCK_BOOTTIME, &now);
   return Tick{std::chrono::seconds{now.tv_sec} + std::chrono::milliseconds{now.tv_nsec / 1'000'000}};
+}
+
+BootId RealClock::boot() const {
+  BootId id{};
+  std::array<char, 64> text{};
+  const int fd = ::open("/proc/sys/kernel/random/boot_id", O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return id;
+  const auto size = ::read(fd, text.data(), text.size());
+  ::close(fd);
+  std::size_t digit = 0;
+  for (ssize_t i = 0; i < size && digit < 32; ++i) {
+    const char c = text[static_cast<std::size_t>(i)];
+    const int value = c >= '0' && c <= '9' ? c - '0' : c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
+    if (value < 0) continue;  // the dashes
+    auto& byte = id[digit++ / 2];
+    byte = static_cast<std::uint8_t>(byte << 4 | value);
+  }
+  return digit == 32 ? id : BootId{};
 }
 
 TimerId RealClock::call_at(Tick when, std::function<void()> then) {

@@ -18,6 +18,7 @@ class RealClock final : public Clock {
   TimerId call_at(Tick when, std::function<void()> then) override;
   void cancel(TimerId id) override;
   [[nodiscard]] bool simulated() const override { return false; }
+  [[nodiscard]] BootId boot() const override;  ///< of /proc/sys/kernel/random/boot_id
 
  private:
   void arm();

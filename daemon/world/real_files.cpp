@@ -52,6 +52,7 @@ FileStat stat_of(const struct ::stat& s) {
   result.links = static_cast<std::uint32_t>(s.st_nlink);
   result.regular = S_ISREG(s.st_mode);
   result.folder = S_ISDIR(s.st_mode);
+  result.mode = s.st_mode & 07777U;
   return result;
 }
 
@@ -218,15 +219,17 @@ class RealFolder final : public Folder {
     Fd file{open_below(fd_.get(), text, O_CREAT | O_EXCL | O_WRONLY, mode)};
     if (file.get() < 0) return failed("create", below(name));
     struct ::stat s {};
-    const bool done = write_all(file.get(), bytes) && ::fchmod(file.get(), mode) == 0 && ::fsync(file.get()) == 0 &&
-                      ::fstat(file.get(), &s) == 0 && file.close();
-    if (!done) {
-      const int problem = errno;
-      ::unlinkat(fd_.get(), text.c_str(), 0);
-      errno = problem;
-      return failed("write", below(name));
-    }
-    return stat_of(s);
+    const char* failing = !write_all(file.get(), bytes)     ? "write"
+                          : ::fchmod(file.get(), mode) != 0 ? "chmod"
+                          : ::fsync(file.get()) != 0        ? "fsync"
+                          : ::fstat(file.get(), &s) != 0    ? "stat"
+                          : !file.close()                   ? "close"
+                                                            : nullptr;
+    if (failing == nullptr) return stat_of(s);
+    const int problem = errno;
+    ::unlinkat(fd_.get(), text.c_str(), 0);
+    errno = problem;
+    return failed(failing, below(name));
   }
 
   [[nodiscard]] FileResult<std::unique_ptr<AppendFile>> append_to(std::string_view name, bool create_new) override {
@@ -240,8 +243,8 @@ class RealFolder final : public Folder {
     if (!is_component(name)) return bad_name("truncate", name);
     Fd file{open_below(fd_.get(), std::string{name}, O_WRONLY, 0)};
     if (file.get() < 0) return failed("open", below(name));
-    if (::ftruncate(file.get(), static_cast<off_t>(size)) != 0 || ::fsync(file.get()) != 0)
-      return failed("truncate", below(name));
+    if (::ftruncate(file.get(), static_cast<off_t>(size)) != 0) return failed("truncate", below(name));
+    if (::fsync(file.get()) != 0) return failed("fsync", below(name));
     return Done{};
   }
 
@@ -266,10 +269,38 @@ class RealFolder final : public Folder {
     return Done{};
   }
 
+  /// The kernel looks at mounts, then at a read-only file system, then at the names: renaming a name that is not there
+  /// says EXDEV or EROFS before it says ENOENT, and changes nothing. Rights are asked of access(2). What flags the file
+  /// system has is found out with two names of ours in this folder.
+  [[nodiscard]] FileResult<Done> check_moves_to(Folder& to) override {
+    auto* other = dynamic_cast<RealFolder*>(&to);
+    if (other == nullptr) return bad_name("rename", "");
+    constexpr const char* kNobody = ".glidehelm-not-there";
+    if (::renameat2(fd_.get(), kNobody, other->fd_.get(), kNobody, RENAME_NOREPLACE) != 0 && errno != ENOENT)
+      return failed("rename", path_ + " to " + other->path_);
+    for (const RealFolder* folder : {static_cast<const RealFolder*>(this), static_cast<const RealFolder*>(other)})
+      if (::faccessat(folder->fd_.get(), ".", W_OK | X_OK, AT_EACCESS) != 0) return failed("write", folder->path_);
+    for (const char* name : {".probe-1", ".probe-2"}) {
+      ::unlinkat(fd_.get(), name, 0);
+      if (auto made = create(name, "", 0640); !made) return unexpected(made.error());
+    }
+    auto moved = exchange(".probe-1", *this, ".probe-2");
+    if (moved) moved = unlink(".probe-2");
+    if (moved) moved = rename_new(".probe-1", *this, ".probe-2");
+    for (const char* name : {".probe-1", ".probe-2"}) ::unlinkat(fd_.get(), name, 0);
+    return moved;
+  }
+
   [[nodiscard]] FileResult<std::unique_ptr<Lock>> lock(std::string_view name) override {
     if (!is_component(name)) return bad_name("lock", name);
     Fd file{open_below(fd_.get(), std::string{name}, O_RDWR | O_CREAT, 0640)};
     if (file.get() < 0) return failed("open", below(name));
+    struct ::stat s {};
+    if (::fstat(file.get(), &s) != 0) return failed("stat", below(name));
+    if (!S_ISREG(s.st_mode)) {
+      errno = EINVAL;
+      return failed("lock", below(name));
+    }
     struct ::flock whole {};
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;

@@ -31,6 +31,7 @@ namespace {
 constexpr std::size_t kMostQueued = 1U << 20;
 constexpr std::size_t kReadSize = 16U << 10;
 constexpr std::chrono::seconds kAcceptAgain{1};
+constexpr std::chrono::seconds kConnectWithin{60};
 
 void watch_peer(tcp::socket& socket) {
   const auto set = [&](int level, int name, int value) {
@@ -275,21 +276,29 @@ void RealNet::connect_tcp(const std::string& host, std::uint16_t port, Connected
   const auto where = host + ":" + std::to_string(port);
   parts_->resolver.async_resolve(
       host, std::to_string(port), tcp::resolver::numeric_service,
-      [this, where, connected = std::move(connected)](const error_code& error,
-                                                      const tcp::resolver::results_type& found) {
+      [&context = parts_->context, where, connected = std::move(connected)](const error_code& error,
+                                                                            const tcp::resolver::results_type& found) {
         if (error) {
           connected(unexpected(NetError{"resolve", where, error.message()}));
           return;
         }
-        auto socket = std::make_shared<tcp::socket>(parts_->context);
+        auto socket = std::make_shared<tcp::socket>(context);
+        // The kernel would knock at a black hole for two minutes.
+        auto patience = std::make_shared<asio::steady_timer>(context, kConnectWithin);
+        patience->async_wait([socket](const error_code& stopped) {
+          error_code ignored;
+          if (!stopped) socket->close(ignored);
+        });
         asio::async_connect(
-            *socket, found, [socket, where, connected](const error_code& problem, const tcp::endpoint&) {
-              if (problem) {
-                connected(unexpected(NetError{"connect", where, problem.message()}));
-                return;
+            *socket, found, [socket, patience, where, connected](const error_code& problem, const tcp::endpoint&) {
+              patience->cancel();
+              if (!problem && socket->is_open()) {
+                watch_peer(*socket);
+                connected(std::shared_ptr<Stream>{std::make_shared<RealStream<tcp::socket>>(std::move(*socket))});
+              } else {
+                connected(unexpected(NetError{
+                    "connect", where, problem && socket->is_open() ? problem.message() : "no answer within 60 s"}));
               }
-              watch_peer(*socket);
-              connected(std::shared_ptr<Stream>{std::make_shared<RealStream<tcp::socket>>(std::move(*socket))});
             });
       });
 }

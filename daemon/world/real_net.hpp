@@ -6,7 +6,7 @@
 namespace glidehelm::world {
 
 /// Boost.Asio streams on the shared loop. TCP peers are watched with keep-alive (30 s idle, 10 s apart, 3 tries) and
-/// TCP_USER_TIMEOUT 60 s, so that a half-open Iridium call ends within a minute (trust.md K-9).
+/// TCP_USER_TIMEOUT 60 s, so that a half-open Iridium call ends within a minute (trust.md K-9); a dial that nobody answers ends after 60 s.
 class RealNet final : public Net {
  public:
   explicit RealNet(RealLoop& loop);

@@ -1,6 +1,7 @@
 #include "daemon/world/real_procs.hpp"
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -73,32 +74,62 @@ struct Pipe {
   }
 };
 
-/// What runs between fork and exec: only async-signal-safe calls, no allocation.
-[[noreturn]] void become(const ProcessRequest& request, const char* program, char* const* arguments,
-                         char* const* environment, int in, int out, int err, int three, pid_t parent) {
+/// What a child needs to become its program, prepared before it exists.
+struct Launch {
+  const ProcessRequest* request{};
+  const char* program{};
+  char* const* arguments{};
+  char* const* environment{};
+  int in{}, out{}, err{}, three{-1};
+  int failed{};  ///< write end of the pipe that tells the parent why exec failed
+  pid_t parent{};
+};
+
+/// What runs between vfork and exec, in the parent's memory: only async-signal-safe calls, no allocation, nothing written
+/// that the parent reads.
+[[noreturn]] void become(const Launch& launch) {
+  const auto give_up = [&] {
+    const int problem = errno;
+    static_cast<void>(!::write(launch.failed, &problem, sizeof problem));
+    ::_exit(127);
+  };
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // the parent died before the line above
-  // The sources may be any numbers, 0–3 among them: they are moved out of the way first.
-  const int safe_in = ::fcntl(in, F_DUPFD, 10), safe_out = ::fcntl(out, F_DUPFD, 10),
-            safe_err = ::fcntl(err, F_DUPFD, 10);
-  const int safe_three = three >= 0 ? ::fcntl(three, F_DUPFD, 10) : -1;
-  ::dup2(safe_in, 0);
-  ::dup2(safe_out, 1);
-  ::dup2(safe_err, 2);
-  if (safe_three >= 0) ::dup2(safe_three, 3);
-  ::syscall(SYS_close_range, safe_three >= 0 ? 4U : 3U, ~0U, 0U);
+  if (::getppid() != launch.parent) ::_exit(127);  // the parent died before the line above
+  // The sources may be any numbers, 0–3 among them: they are copied out of the way first.
+  const int safe_in = ::fcntl(launch.in, F_DUPFD_CLOEXEC, 10);
+  const int safe_out = ::fcntl(launch.out, F_DUPFD_CLOEXEC, 10);
+  const int safe_err = ::fcntl(launch.err, F_DUPFD_CLOEXEC, 10);
+  const int safe_three = launch.three >= 0 ? ::fcntl(launch.three, F_DUPFD_CLOEXEC, 10) : -1;
+  const bool has_three = launch.three >= 0;
+  if (::dup2(safe_in, 0) < 0 || ::dup2(safe_out, 1) < 0 || ::dup2(safe_err, 2) < 0) give_up();
+  if (has_three && ::dup2(safe_three, 3) < 0) give_up();
+  // Asio's sockets are not close-on-exec: everything above is marked.
+  if (::syscall(SYS_close_range, has_three ? 4U : 3U, ~0U, CLOSE_RANGE_CLOEXEC) != 0) give_up();
+  for (const int number : {SIGPIPE, SIGHUP, SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  ::signal(SIGPIPE, SIG_DFL);
-  if (request.memory_at_most > 0) {
-    const rlimit limit{request.memory_at_most, request.memory_at_most};
-    ::setrlimit(RLIMIT_AS, &limit);
-  }
+  const std::size_t most = launch.request->memory_at_most;
+  if (const rlimit limit{most, most}; most > 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) give_up();
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  ::execve(program, arguments, environment);
-  ::_exit(errno == ENOENT ? 127 : 126);
+  ::execve(launch.program, launch.arguments, launch.environment);
+  give_up();
+  ::_exit(127);
+}
+
+/// vfork, so that a daemon with gigabytes of mapped forecast starts a child without copying its page tables. Signals wait
+/// meanwhile: a handler must not run in the child, in our memory.
+pid_t spawn(const Launch& launch) {
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t child = ::vfork();
+  if (child == 0) become(launch);
+  const int problem = errno;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  errno = problem;
+  return child;
 }
 
 /// Moves bytes until both outputs are closed, the deadline is over, too much came, or `kill` is raised.
@@ -177,23 +208,42 @@ ProcessResult execute(const ProcessRequest& request, const std::atomic<bool>& ki
   for (auto& setting : settings) environment.push_back(setting.data());
   environment.push_back(nullptr);
 
-  const pid_t parent = ::getpid();
-  const pid_t child = ::fork();
+  Pipe started;
+  if (!started.open()) {
+    result.code = errno;
+    return result;
+  }
+  Launch launch;
+  launch.request = &request;
+  launch.program = program.c_str();
+  launch.arguments = arguments.data();
+  launch.environment = environment.data();
+  launch.in = in.read_end;
+  launch.out = out.write_end;
+  launch.err = err.write_end;
+  launch.three = request.descriptor3 ? request.descriptor3->descriptor() : -1;
+  launch.failed = started.write_end;
+  launch.parent = ::getpid();
+  const pid_t child = spawn(launch);
   if (child < 0) {
     result.code = errno;
     return result;
   }
-  if (child == 0)
-    become(request, program.c_str(), arguments.data(), environment.data(), in.read_end, out.write_end, err.write_end,
-           request.descriptor3 ? request.descriptor3->descriptor() : -1, parent);
   Pipe::close(in.read_end);
   Pipe::close(out.write_end);
   Pipe::close(err.write_end);
-  result.end = serve(request, in, out, err, child, kill, result);
-  if (result.end == End::exited && result.code == 127) {
-    result.end = End::not_started;
-    result.code = ENOENT;
+  Pipe::close(started.write_end);
+  int problem = 0;
+  ssize_t told = 0;
+  while ((told = ::read(started.read_end, &problem, sizeof problem)) < 0 && errno == EINTR) {
   }
+  if (told == static_cast<ssize_t>(sizeof problem)) {  // exec closes the pipe; a number in it is why it did not happen
+    while (::waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+    }
+    result.code = problem;
+    return result;
+  }
+  result.end = serve(request, in, out, err, child, kill, result);
   return result;
 }
 

@@ -8,7 +8,7 @@
 
 namespace glidehelm::world {
 
-/// Children of this machine: fork and exec with closed descriptors, an environment of PATH, TMPDIR and LC_ALL=C,
+/// Children of this machine: vfork and exec with closed descriptors, an environment of PATH, TMPDIR and LC_ALL=C,
 /// PR_SET_PDEATHSIG, limits and a deadline. Each running child is served by a thread of its own that only moves bytes and
 /// posts the result into the loop.
 class RealProcs final : public Procs {

@@ -179,13 +179,18 @@ void take_sensors(const SurfaceBlock& block, model::Surfacing& out) {
 
 }  // namespace
 
-Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const Limits& limits) {
+model::Surfacing facts_beside_fix(const SurfaceBlock& block, const Limits& limits) {
   model::Surfacing out;
-  if (auto no = Judgement{block, limits}.objection(out)) return unexpected(std::move(*no));
   take_mission(block, out);
   take_water(block, limits, out);
   take_aim(block, out);
   take_sensors(block, out);
+  return out;
+}
+
+Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const Limits& limits) {
+  model::Surfacing out = facts_beside_fix(block, limits);
+  if (auto no = Judgement{block, limits}.objection(out)) return unexpected(std::move(*no));
   return out;
 }
 

@@ -33,7 +33,10 @@ struct Limits {
 /// m/s; `m_gps_mag_var` and every other sensor only when it was ever updated, except the constants `u_…` and the commands
 /// `c_…`, whose value holds without an age (`c_wpt_lat` and `c_wpt_lon` are 0 then and left out).
 Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const Limits& limits);
-/// The same with the usual limits.
+/// Everything of a surfacing but the fix itself: mission, reason, window, water, waypoint and sensors, also of a block
+/// whose fix is refused.
+model::Surfacing facts_beside_fix(const SurfaceBlock& block, const Limits& limits);
+/// `accept_fix` with the usual limits.
 Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const std::string& glider);
 
 }  // namespace glidehelm::protocol

@@ -152,5 +152,7 @@ int main(int argc, char** argv) {
     return run(arguments);
   } catch (const std::bad_alloc&) {
     return refuse(arguments.files.front() + ": needs more memory than there is");
+  } catch (const std::exception& error) {  // a bug of ours, but this program must answer in its own words
+    return refuse(arguments.files.front() + ": " + error.what());
   }
 }

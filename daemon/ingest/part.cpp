@@ -16,6 +16,7 @@ namespace glidehelm::ingest {
 namespace {
 
 constexpr double kRefusedSpeed = 5.0, kWarnedSpeed = 3.5;
+constexpr double kNodesAtMost = 2e9;  // 16 GB of floats
 
 struct GridAxesInFile {
   Ascending times, depths, lats, lons;
@@ -214,6 +215,12 @@ Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes
   auto in = read_axes(*file, *axes, units, options, facts.warnings);
   if (!in) return unexpected(in.error());
   part.grid.axes = {in->times.values, in->depths.values, in->lats.values, in->lons.values, in->has_time, in->has_depth};
+  double nodes = 1;  // in floating point, which does not wrap
+  for (const auto* axis : {&in->times, &in->depths, &in->lats, &in->lons})
+    nodes *= static_cast<double>(axis->values.size());
+  if (nodes > kNodesAtMost)
+    return fault("it has " + text_of("%.3g", nodes, 0) + " nodes, allowed is " + text_of("%.3g", kNodesAtMost, 0) +
+                 "; cut it with --area W/E/S/N");
   part.grid.values.resize(2 * part.grid.axes.nodes());
   float* values = part.grid.values.data();
   for (const auto* variable : {pair->east, pair->north}) {

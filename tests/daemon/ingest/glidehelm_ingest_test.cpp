@@ -30,6 +30,23 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(at, from.size(), to);
 }
 
+/// Axes of a hundred thousand times and a thousand rows and columns; the values themselves are never written.
+std::string monstrous_axes() {
+  std::string text =
+      "u:_Storage = \"chunked\" ; u:_ChunkSizes = 1, 10, 10 ; v:_Storage = \"chunked\" ; v:_ChunkSizes = 1, 10, 10 ; "
+      "data: ";
+  const auto axis = [&](const char* name, int count, double first, double step) {
+    text += std::string{name} + " = ";
+    for (int i = 0; i < count; ++i)
+      text += (i > 0 ? ", " : "") + (step == 1 ? std::to_string(i) : std::to_string(first + step * i));
+    text += " ; ";
+  };
+  axis("time", 100000, 0, 1);
+  axis("lat", 1000, 0, 0.01);
+  axis("lon", 1000, 0, 0.01);
+  return text;
+}
+
 /// Two times, two rows, three columns: u = 0.1·(1…12), v = −u; one missing value of each.
 const std::string kPlain = R"(netcdf f {
 dimensions: time = 2 ; lat = 2 ; lon = 3 ;
@@ -305,6 +322,15 @@ TEST_CASE("a sea of zeros, of nothing, or faster than a sea is refused") {
   CHECK(fast.view->facts.warnings ==
         std::vector<std::string>{"f.nc: a current of 4.12 m/s at 40.0000, -5.0000, 2024-01-01T06:00:00Z",
                                  "f.nc: 1 of 2 times have no value at all and are left out"});
+}
+
+TEST_CASE("a small file that describes a monstrous grid is refused before anything is allocated") {
+  CHECK(
+      refusal("netcdf f { dimensions: time = 100000 ; lat = 1000 ; lon = 1000 ; variables: int time(time) ; time:units "
+              "= \"s since "
+              "2000-01-01\" ; float lat(lat) ; float lon(lon) ; float u(time, lat, lon) ; float v(time, lat, lon) ; " +
+                  monstrous_axes() + " }",
+              "", "netCDF-4") == "it has 1e+11 nodes, allowed is 2e+09; cut it with --area W/E/S/N\n");
 }
 
 TEST_CASE("a truncated or unreadable file is refused before the library sees it") {

@@ -16,7 +16,7 @@ constexpr std::uint32_t kSegmentVersion = 1;
 constexpr std::uint16_t kRecordVersion = 1;
 constexpr std::size_t kSegmentHeader = 32;
 constexpr std::size_t kRecordHeader = 84;
-constexpr std::size_t kReserve = 1U << 20;
+constexpr std::size_t kMostOvershoot = 1U << 20;  // a segment ends with the record that reached its limit
 constexpr const char* kReserveName = "journal.reserve";
 constexpr const char* kLockName = "journal.lock";
 
@@ -144,7 +144,12 @@ JournalError Journal::failed(const world::FileError& error) {
 
 Expected<std::unique_ptr<Journal>, JournalError> Journal::open(world::Folder& folder, Instant utc, Tick tick,
                                                                const world::BootId& boot) {
-  std::unique_ptr<Journal> journal{new Journal{folder, boot}};
+  return open(folder, utc, tick, boot, Limits{});
+}
+
+Expected<std::unique_ptr<Journal>, JournalError> Journal::open(world::Folder& folder, Instant utc, Tick tick,
+                                                               const world::BootId& boot, const Limits& limits) {
+  std::unique_ptr<Journal> journal{new Journal{folder, boot, limits}};
   auto lock = folder.lock(kLockName);
   if (!lock && lock.error().code == EAGAIN)
     return unexpected(
@@ -153,7 +158,7 @@ Expected<std::unique_ptr<Journal>, JournalError> Journal::open(world::Folder& fo
   journal->lock_ = std::move(lock).value();
   if (auto read = journal->read_back(); !read) return unexpected(read.error());
   if (auto reserve = journal->make_reserve(); !reserve) return unexpected(reserve.error());
-  if (!journal->name_.empty() && journal->size_ < kSegment) {
+  if (!journal->name_.empty() && journal->size_ < limits.segment) {
     if (auto begun = journal->continue_segment(); !begun) return unexpected(begun.error());
     // What an earlier process left unsynced is made durable first, so that the epoch record can vouch for it.
     if (auto synced = journal->sync(); !synced) return unexpected(synced.error());
@@ -182,7 +187,7 @@ Expected<Done, JournalError> Journal::read_back() {
 }
 
 Expected<Done, JournalError> Journal::read_segment(const std::string& name, bool last) {
-  const auto content = folder_.read(name, kSegment + kMostPayload + (1U << 20));
+  const auto content = folder_.read(name, kSegment + kMostPayload + kMostOvershoot);
   if (!content) return unexpected(failed(content.error()));
   const std::string_view bytes{*content};
   const auto corrupt = [&](std::size_t at, const std::string& what) {
@@ -246,10 +251,10 @@ Expected<Done, JournalError> Journal::cut_torn(const std::string& name, std::siz
 }
 
 Expected<Done, JournalError> Journal::make_reserve() {
-  if (const auto there = folder_.stat(kReserveName); there && there->size == kReserve) return Done{};
+  if (const auto there = folder_.stat(kReserveName); there && there->size == limits_.reserve) return Done{};
   if (auto gone = folder_.unlink(kReserveName); !gone && gone.error().code != ENOENT)
     return unexpected(failed(gone.error()));
-  if (auto made = folder_.create(kReserveName, std::string(kReserve, '\0'), 0640); !made)
+  if (auto made = folder_.create(kReserveName, std::string(limits_.reserve, '\0'), 0640); !made)
     return unexpected(failed(made.error()));
   if (auto synced = folder_.sync(); !synced) return unexpected(failed(synced.error()));
   return Done{};
@@ -276,7 +281,8 @@ Expected<Done, JournalError> Journal::continue_segment() {
 
 /// A segment with room is open.
 Expected<Done, JournalError> Journal::ready_to_write() {
-  if (!name_.empty() && size_ < kSegment) return file_ ? Expected<Done, JournalError>{Done{}} : continue_segment();
+  if (!name_.empty() && size_ < limits_.segment)
+    return file_ ? Expected<Done, JournalError>{Done{}} : continue_segment();
   if (file_)
     if (auto synced = sync(); !synced) return synced;
   return begin_segment(segment_ + 1);

@@ -89,9 +89,17 @@ class Journal {
   static constexpr std::size_t kSegment = 16U << 20;
   static constexpr std::size_t kMostPayload = 64U << 10;
 
+  /// How large things are; tests make them small.
+  struct Limits {
+    std::size_t segment{kSegment};  ///< a segment that has reached it is followed by the next
+    std::size_t reserve{1U << 20};  ///< bytes kept free for the last word
+  };
+
   /// Opens or begins the journal in `folder`, which must outlive it, and appends an epoch record durably.
   static Expected<std::unique_ptr<Journal>, JournalError> open(world::Folder& folder, Instant utc, Tick tick,
                                                                const world::BootId& boot = {});
+  static Expected<std::unique_ptr<Journal>, JournalError> open(world::Folder& folder, Instant utc, Tick tick,
+                                                               const world::BootId& boot, const Limits& limits);
 
   /// Everything that was there at the opening, the new epoch record not included.
   [[nodiscard]] const std::vector<JournalRecord>& past() const { return past_; }
@@ -111,7 +119,8 @@ class Journal {
   [[nodiscard]] bool full() const { return full_; }
 
  private:
-  Journal(world::Folder& folder, const world::BootId& boot) : folder_{folder}, boot_{boot} {}
+  Journal(world::Folder& folder, const world::BootId& boot, const Limits& limits)
+      : folder_{folder}, boot_{boot}, limits_{limits} {}
   Expected<Done, JournalError> read_back();
   Expected<Done, JournalError> read_segment(const std::string& name, bool last);
   Expected<Done, JournalError> cut_torn(const std::string& name, std::size_t good, std::string_view content);
@@ -125,6 +134,7 @@ class Journal {
 
   world::Folder& folder_;
   world::BootId boot_;
+  Limits limits_;
   std::unique_ptr<world::Lock> lock_;
   std::unique_ptr<world::AppendFile> file_;
   std::string name_;

@@ -149,7 +149,7 @@ const Fields<Draft>& fields() {
     f.constant({"schema", "what this file is", true}, kDaemonSchema);
     add_clock(f);
     f.text({"state_dir", "folder of the journal and of the ocean grids"}, &Draft::state_dir);
-    f.text({"control_socket", "socket of `glidehelm status` and the other verbs"}, &Draft::control_socket);
+    f.text({"control_socket", "socket for commands to the running daemon"}, &Draft::control_socket);
     f.texts({"missions", "mission files; shell patterns"}, &Draft::missions, 0);
     f.text({"coast", "coast file of missions that name none", false, "none"}, &Draft::coast);
     f.section({"log", "what is logged"}, log);

@@ -34,18 +34,37 @@ void SimulatedClock::start(std::function<void()> ready) {
   connect(kTries);
 }
 
+SimulatedClock::~SimulatedClock() {
+  *alive_ = false;
+  if (stream_) stream_->close();
+}
+
+/// Once: whoever hears it may destroy this clock.
+void SimulatedClock::lose(std::string_view reason) {
+  if (stream_) std::exchange(stream_, nullptr)->close();
+  running_ = false;
+  if (const auto lost = std::exchange(lost_, nullptr)) lost(reason);
+}
+
 void SimulatedClock::connect(int tries_left) {
-  net_.connect_unix(socket_, [this, tries_left](Expected<std::shared_ptr<Stream>, NetError> stream) {
+  net_.connect_unix(socket_, [this, tries_left, alive = alive_](Expected<std::shared_ptr<Stream>, NetError> stream) {
+    if (!*alive) return;
     if (!stream) {
       if (tries_left == 0)
-        lost_(stream.error().message());
+        lose(stream.error().message());
       else
-        wall_.call_at(wall_.tick() + kBetweenTries, [this, tries_left] { connect(tries_left - 1); });
+        wall_.call_at(wall_.tick() + kBetweenTries, [this, tries_left, alive] {
+          if (*alive) connect(tries_left - 1);
+        });
       return;
     }
     stream_ = std::move(stream).value();
-    stream_->start(
-        {[this](std::string_view bytes) { take_bytes(bytes); }, [this](std::string_view reason) { lost_(reason); }});
+    stream_->start({[this, alive](std::string_view bytes) {
+                      if (*alive) take_bytes(bytes);
+                    },
+                    [this, alive](std::string_view reason) {
+                      if (*alive) lose(reason);
+                    }});
   });
 }
 

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "core/base/expected.hpp"
+#include "core/chart/coast.hpp"
+#include "daemon/world/world.hpp"
+
+namespace glidehelm::cli {
+
+/// `glidehelm coast --area W/E/S/N -o FILE`.
+struct CoastOptions {
+  std::string area;  ///< "W/E/S/N" in degrees; E may be west of W by the number (across the antimeridian) or exceed 180
+  std::string output;  ///< the coast file; replaced when it exists
+};
+
+/// "-19/-12/26.5/30": degrees, west in [-180, 180], east up to 180° east of it (a smaller number means across the
+/// antimeridian: 176/-176), within 85° of the equator, each side at least 0.01°. The error says what is allowed.
+Expected<chart::CoastArea, std::string> coast_area(const std::string& text);
+
+/// Cuts GSHHG full resolution (levels 1 to 4: land, lakes, islands in lakes, ponds on them; the ice front for Antarctica)
+/// with the program `gmt`, closes it along the border of the area and writes a coast file (chart::Coast), complete or not
+/// at all. Which side of the shore is land is asked of gmt at many places along the border; the answers must agree.
+///
+/// Messages go to `err` (progress, when there is more than one part to cut), one summary line to `out`. Returns 0 done,
+/// 1 when gmt or GSHHG is missing (the message holds the apt line), answers nonsense, or the file cannot be written, 2
+/// when area or output make no sense. Nothing is written unless 0 is returned.
+int run_coast(const CoastOptions& options, world::World& world, std::ostream& out, std::ostream& err);
+
+}  // namespace glidehelm::cli

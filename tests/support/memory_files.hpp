@@ -236,10 +236,11 @@ class MemoryFiles final : public world::Files {
 
   /// Counts an operation; its errno when it is to fail.
   int step(const std::string& operation, const std::string& path, bool writes) {
-    if (before_each) {
-      const auto observer = std::exchange(before_each, nullptr);
+    if (before_each && !observing_) {
+      observing_ = true;
+      const auto observer = before_each;  // it may take itself off
       observer(operation, path);
-      before_each = observer;
+      observing_ = false;
     }
     ++operations_;
     if (!fault_) return 0;
@@ -534,6 +535,7 @@ class MemoryFiles final : public world::Files {
   std::optional<Fault> fault_;
   std::size_t operations_{};
   std::uint64_t generation_{}, last_inode_{};
+  bool observing_{};
 };
 
 }  // namespace glidehelm::test

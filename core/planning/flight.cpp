@@ -100,10 +100,7 @@ Plan plan_from(std::string method, const vehicle::FlownList& flown, const Proble
   plan.statistics = statistics;
   plan.arrival_s = flown.arrival_s.value_or(std::numeric_limits<double>::quiet_NaN());
   const auto goal = disc_of(problem);
-  plan.remaining = distance(problem.start.fix, goal.centre);
-  for (const auto& stint : plan.stints)
-    plan.remaining =
-        std::min({plan.remaining, distance(stint.dive, goal.centre), distance(stint.surface, goal.centre)});
+  plan.remaining = std::min(distance(problem.start.fix, goal.centre), distance(flown.closest, goal.centre));
   if (flown.arrival_s) {
     plan.status = PlanStatus::reaches_goal;
     plan.remaining = std::min(plan.remaining, goal.radius);

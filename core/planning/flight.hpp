@@ -19,7 +19,7 @@ vehicle::Waters waters_of(const Problem& problem, const ocean::Ocean& ocean, con
 std::optional<PlanFailure> check_ends(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart);
 
 /// A plan from what was flown. When the goal is not reached, `reason` says why and `remaining` is the geodesic distance from
-/// the goal's centre at the nearest of the start, the dives and the surfacings.
+/// the goal's centre at the nearest position of the way.
 Plan plan_from(std::string method, const vehicle::FlownList& flown, const Problem& problem,
                const Statistics& statistics);
 

@@ -18,15 +18,12 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& problem, Members members
   std::optional<PlanFailure> failure;
   Statistics total;
   for (const auto* stage : stages) {
-    if (best && budget.expired && budget.expired()) break;
     auto answer = stage->plan(problem, members, chart, budget, {});
     if (!answer) {
       failure = answer.error();
       continue;
     }
-    total.expansions += answer->statistics.expansions;
-    total.cost_evaluations += answer->statistics.cost_evaluations;
-    total.current_evaluations += answer->statistics.current_evaluations;
+    total += answer->statistics;
     if (best && !better_than(*answer, *best)) {
       best->cut_at = answer->cut_at;
       continue;

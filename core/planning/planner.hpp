@@ -63,6 +63,12 @@ using Members = std::span<const ocean::Ocean>;
 /// Counts of what a plan cost; part of every answer.
 struct Statistics {
   std::uint64_t expansions{}, cost_evaluations{}, current_evaluations{};
+  Statistics& operator+=(const Statistics& more) {
+    expansions += more.expansions;
+    cost_evaluations += more.cost_evaluations;
+    current_evaluations += more.current_evaluations;
+    return *this;
+  }
   friend bool operator==(const Statistics&, const Statistics&) = default;
 };
 

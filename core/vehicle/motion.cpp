@@ -10,8 +10,11 @@ namespace {
 
 constexpr double kStepTolerance = 0.02;  // metres per step
 constexpr double kLongestStep = 1200.0, kShortestStep = 10.0;
-constexpr double kCrossing = 0.05;  // seconds
-constexpr double kNear = 50'000.0;  // metres: where the local metric is exact enough
+constexpr double kCrossing = 0.05;    // seconds
+constexpr double kNoMoreTime = 1e-6;  // seconds: shorter than anything that matters, longer than rounding
+constexpr double kNear = 50'000.0;    // metres: where the local metric is exact enough
+constexpr double kSlack = 1.0;        // metres: distances of the chart round, and a track that slides along is not lost
+constexpr int kGrazes = 8;            // parts of a step in which an arrival is looked for
 
 /// One Runge–Kutta step of one lane.
 struct Stepper {
@@ -39,16 +42,6 @@ struct Stepper {
 };
 
 double gap(const State& a, const State& b) { return local_offset(a.lat, a.lon, b.lat, b.lon).length(); }
-
-/// Smallest distance from the disc's centre to the straight segment between two states.
-double closest_on(const State& a, const State& b, const Disc& disc) {
-  const auto to_a = local_offset(disc.centre.lat.radians(), disc.centre.lon.radians(), a.lat, a.lon);
-  const auto to_b = local_offset(disc.centre.lat.radians(), disc.centre.lon.radians(), b.lat, b.lon);
-  const double de = to_b.east - to_a.east, dn = to_b.north - to_a.north;
-  const double length2 = de * de + dn * dn;
-  const double f = length2 > 0 ? std::clamp(-(to_a.east * de + to_a.north * dn) / length2, 0.0, 1.0) : 0.0;
-  return std::hypot(to_a.east + f * de, to_a.north + f * dn);
-}
 
 }  // namespace
 
@@ -81,23 +74,46 @@ Lost lost_by(ocean::NoCurrent reason) {
   return Lost::no_data;
 }
 
+double gained_margin(const State& there, double before, const Waters& waters) {
+  const double clearance = waters.chart.clearance(there.lat, there.lon);
+  return std::max(before, std::min(clearance - kSlack, waters.margin.si()));
+}
+
 State state_at(GeoPoint p, double t_s, const Waters& waters) {
   State s{p.lat.radians(), p.lon.radians(), t_s, waters.margin.si()};
   if (waters.chart.clearance_at_least(s.lat, s.lon) < s.margin)
-    s.margin = std::min(s.margin, waters.chart.clearance(s.lat, s.lon));
+    s.margin = std::min(s.margin, waters.chart.clearance(s.lat, s.lon) - kSlack);
   return s;
 }
 
 double distance_near(double lat, double lon, const Disc& disc) {
   const double centre_lat = disc.centre.lat.radians(), centre_lon = disc.centre.lon.radians();
   const double bound = distance_lower_bound(lat, lon, centre_lat, centre_lon);
-  return bound > kNear ? bound : local_offset(lat, lon, centre_lat, centre_lon).length();
+  if (bound <= kNear) return local_offset(lat, lon, centre_lat, centre_lon).length();
+  // The bound is at most 1 % short, so only near the rim of a very large disc the truth is needed.
+  if (bound > disc.radius.si()) return bound;
+  return distance(GeoPoint::from_kernel(lat, lon), disc.centre).si();
+}
+
+std::optional<double> entry_into(const Disc& disc, double lat0, double lon0, double lat1, double lon1) {
+  const double radius = disc.radius.si();
+  const double before = distance_near(lat0, lon0, disc), after = distance_near(lat1, lon1, disc);
+  if (before <= radius) return 0.0;
+  const auto way = local_offset(lat0, lon0, lat1, lon1);
+  const double length2 = way.east * way.east + way.north * way.north;
+  if (length2 <= 0 || before - radius > std::sqrt(length2)) return std::nullopt;
+  // In the triangle of the step and the centre: the projection of the centre onto the step, by the law of cosines.
+  const double along = 0.5 * (length2 + before * before - after * after);  // step · (centre − start)
+  const double root2 = along * along - length2 * (before * before - radius * radius);
+  if (along <= 0 || root2 < 0) return std::nullopt;
+  const double fraction = (before * before - radius * radius) / (along + std::sqrt(root2));
+  return fraction <= 1.0 ? std::optional{fraction} : std::nullopt;
 }
 
 namespace {
 
-/// The first instant of the step from `from` (of length dt) inside the disc: bisection on the time at which a step of that
-/// length ends inside. Precondition: a step of length `inside` ends inside, `from` is outside.
+/// The first instant of the step from `from` inside the disc. Precondition: `from` is outside, a step of length `inside`
+/// ends inside.
 double crossing(Stepper& stepper, const State& from, double inside, const Disc& goal) {
   double outside = 0;
   while (inside - outside > kCrossing) {
@@ -112,17 +128,18 @@ double crossing(Stepper& stepper, const State& from, double inside, const Disc& 
 /// Looks for an arrival between two states of one step.
 std::optional<double> arrival_in(Stepper& stepper, const State& from, const State& to, const Disc& goal) {
   const double radius = goal.radius.si(), dt = to.t_s - from.t_s;
-  if (distance_near(from.lat, from.lon, goal) <= radius) return from.t_s;
-  if (distance_near(to.lat, to.lon, goal) <= radius) return crossing(stepper, from, dt, goal);
-  // Both ends outside: the track may cut the disc in between. A bend of the track moves it off the chord by less than
-  // an eighth of its length; only then is it worth looking closer.
-  if (closest_on(from, to, goal) > radius + gap(from, to) / 8) return std::nullopt;
-  for (int i = 1; i < 8; ++i) {
+  const double before = distance_near(from.lat, from.lon, goal), after = distance_near(to.lat, to.lon, goal);
+  if (before <= radius) return from.t_s;
+  // Both ends outside: the track may cut the disc in between, but no track of one step is longer than 1.5 times its
+  // chord plus what the shortest step can cover.
+  const bool may_graze = before + after - 2 * radius <= 1.5 * gap(from, to) + 20.0;
+  if (after > radius && !may_graze) return std::nullopt;
+  for (int i = 1; i <= kGrazes; ++i) {
     State s = from;
-    if (!stepper.step(s, dt * i / 8)) return std::nullopt;
-    if (distance_near(s.lat, s.lon, goal) <= radius) return crossing(stepper, from, dt * i / 8, goal);
+    if (!stepper.step(s, dt * i / kGrazes)) break;
+    if (distance_near(s.lat, s.lon, goal) <= radius) return crossing(stepper, from, dt * i / kGrazes, goal);
   }
-  return std::nullopt;
+  return after <= radius ? std::optional{to.t_s} : std::nullopt;
 }
 
 }  // namespace
@@ -135,8 +152,9 @@ Motion move(const Waters& waters, ocean::FieldRef field, State from, double dura
   double step = std::min(600.0, duration), east = 0, north = 0;
   if (goal != nullptr) motion.closest = distance_near(from.lat, from.lon, *goal);
   if (goal != nullptr && motion.closest <= goal->radius.si()) motion.arrival_s = from.t_s;
+  motion.closest_at = from;
   State now = from;
-  while (until - now.t_s > 1e-6) {
+  while (until - now.t_s > kNoMoreTime) {
     const double dt = std::min(step, until - now.t_s);
     State whole = now, halves = now;
     const bool has_current = stepper.step(whole, dt) && stepper.step(halves, dt / 2) && stepper.step(halves, dt / 2);
@@ -162,10 +180,15 @@ Motion move(const Waters& waters, ocean::FieldRef field, State from, double dura
     const auto way = local_offset(now.lat, now.lon, halves.lat, halves.lon);
     east += way.east - through_water.east * dt;
     north += way.north - through_water.north * dt;
-    if (now.margin < waters.margin.si())
-      halves.margin = std::clamp(waters.chart.clearance(halves.lat, halves.lon), now.margin, waters.margin.si());
+    if (now.margin < waters.margin.si()) halves.margin = gained_margin(halves, now.margin, waters);
     now = halves;
-    if (goal != nullptr) motion.closest = std::min(motion.closest, distance_near(now.lat, now.lon, *goal));
+    if (goal != nullptr) {
+      const double near = distance_near(now.lat, now.lon, *goal);
+      if (near < motion.closest) {
+        motion.closest = near;
+        motion.closest_at = now;
+      }
+    }
     if (difference < kStepTolerance / 8) step = std::min(kLongestStep, step * 2);
   }
   motion.end = now;
@@ -174,34 +197,52 @@ Motion move(const Waters& waters, ocean::FieldRef field, State from, double dura
   return motion;
 }
 
+namespace {
+
+constexpr std::size_t kProbes = 4;
+
+ocean::Lanes probes_at(GeoPoint p, Bearing along, MetresPerSecond speed) {
+  ocean::Lanes lanes{};
+  lanes.count = static_cast<int>(kProbes);
+  for (std::size_t i = 0; i < kProbes; ++i) {
+    const auto v = WaterVelocity::of(Heading{along.from_north() + degrees(90.0 * static_cast<double>(i))}, speed);
+    lanes.lat[i] = p.lat.radians();
+    lanes.lon[i] = p.lon.radians();
+    lanes.water_east[i] = v.east;
+    lanes.water_north[i] = v.north;
+    lanes.lost[i] = 0;
+  }
+  return lanes;
+}
+
+/// How far apart a stint in `steps` and one in twice as many end, in metres; lost probes do not count.
+double probe_difference(ocean::FieldRef field, const ocean::Lanes& start, double t_s, double stint, int steps) {
+  const auto flown = [&](int n) {
+    auto lanes = start;
+    for (int k = 0; k < n; ++k) field.advance(lanes, t_s + k * stint / n, stint / n);
+    return lanes;
+  };
+  const auto coarse = flown(steps), fine = flown(2 * steps);
+  double worst = 0;
+  for (std::size_t i = 0; i < kProbes; ++i)
+    if (coarse.lost[i] == 0 && fine.lost[i] == 0)
+      worst = std::max(worst, local_offset(coarse.lat[i], coarse.lon[i], fine.lat[i], fine.lon[i]).length());
+  return worst;
+}
+
+}  // namespace
+
 double lane_step(const ocean::Ocean& ocean, GeoPoint from, GeoPoint to, double t_s, double stint, MetresPerSecond speed,
                  double tolerance) {
+  constexpr double kLongestLaneStep = 3600.0, kShortestLaneStep = 300.0;
   const auto line = geodesic(from, to);
-  double steps = std::ceil(stint / 3600.0);
-  for (; stint / steps > 300.0; steps *= 2) {
+  int steps = std::max(1, static_cast<int>(std::ceil(stint / kLongestLaneStep)));
+  for (; stint / steps > kShortestLaneStep; steps *= 2) {
     double worst = 0;
     for (int place = 0; place < 9; ++place) {
-      const auto p = destination(from, line.departing, line.length * (place / 8.0));
-      std::array<ocean::Lanes, 2> probes{};
-      for (int fine = 0; fine < 2; ++fine) {
-        auto& lanes = probes[static_cast<std::size_t>(fine)];
-        lanes.count = 4;
-        for (std::size_t i = 0; i < 4; ++i) {
-          const Heading heading{line.departing.from_north() + degrees(90.0 * static_cast<double>(i))};
-          const auto v = WaterVelocity::of(heading, speed);
-          lanes.lat[i] = p.lat.radians();
-          lanes.lon[i] = p.lon.radians();
-          lanes.water_east[i] = v.east;
-          lanes.water_north[i] = v.north;
-          lanes.lost[i] = 0;
-        }
-        const double n = steps * (fine + 1);
-        for (int k = 0; k < static_cast<int>(n); ++k) ocean.dive.advance(lanes, t_s + k * stint / n, stint / n);
-      }
-      for (std::size_t i = 0; i < 4; ++i)
-        if (probes[0].lost[i] == 0 && probes[1].lost[i] == 0)
-          worst = std::max(
-              worst, local_offset(probes[0].lat[i], probes[0].lon[i], probes[1].lat[i], probes[1].lon[i]).length());
+      const Metres way = line.length * (place / 8.0);
+      const auto probes = probes_at(destination(from, line.departing, way), line.departing, speed);
+      worst = std::max(worst, probe_difference(ocean.dive, probes, t_s + (way / speed).count(), stint, steps));
     }
     if (worst <= tolerance * speed.si() * stint) break;
   }

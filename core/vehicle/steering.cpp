@@ -3,155 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vehicle/dive_by_law.hpp"
+
 namespace glidehelm::vehicle {
 
 namespace {
 
-constexpr double kStep = 120.0;  // seconds
-constexpr int kMostStints = 200;
 constexpr double kShortestLeg = 500.0;     // metres
 constexpr double kSmallestRadius = 100.0;  // metres
-constexpr double kFarAim = 30'000.0;      // metres: beyond, the local metric bends bearings (0.2 deg at 60 N)
-constexpr double kNoMoreTime = 1e-6;       // seconds
+constexpr double kSightPiece = 20'000.0;  // metres: the sagitta of a geodesic over it is below 10 m to 60°, 50 m to 80°
 
-struct Vector {
-  double east{}, north{};
-  [[nodiscard]] double length() const { return std::hypot(east, north); }
-};
-
-Vector vector_of(Current c) { return {c.east.si(), c.north.si()}; }
-
-/// Offset of a waypoint seen from a near position in the plane whose north is the position's: the local offset is that of
-/// the middle latitude, whose meridian differs from the position's by half the convergence.
-Vector towards(double lat, double lon, GeoPoint to) {
-  const double to_lat = to.lat.radians(), to_lon = to.lon.radians();
-  const auto offset = local_offset(lat, lon, to_lat, to_lon);
-  if (offset.length() > kFarAim) {
-    const auto line = geodesic(GeoPoint::from_kernel(lat, lon), to);
-    return {line.length.si() * line.departing.east(), line.length.si() * line.departing.north()};
-  }
-  const double half = 0.5 * std::remainder(to_lon - lon, 2 * kPi) * std::sin(0.5 * (lat + to_lat));
-  return {offset.east * std::cos(half) - offset.north * std::sin(half),
-          offset.east * std::sin(half) + offset.north * std::cos(half)};
-}
-
-/// Heading = bearing − asin(cross/Û); |cross| ≥ Û steers square to the bearing, as far up-current as it goes.
-double steered(const Vector& aim, Vector believed, double believed_speed) {
-  const double bearing = std::atan2(aim.east, aim.north);
-  const double cross = believed.east * std::cos(bearing) - believed.north * std::sin(bearing);
-  return bearing - std::asin(std::clamp(cross / believed_speed, -1.0, 1.0));
-}
-
-/// One dive by the law towards a sequence of waypoints.
-class Dive {
- public:
-  Dive(const Flight& flight, const Waters& waters, Metres radius)
-      : flight_{flight}, waters_{waters}, radius_{radius.si()} {}
-
-  struct Outcome {
-    Motion motion;
-    double first_heading{};
-    bool to_goal{};  ///< steered at the goal itself, not at an aim point
-  };
-
-  /// Flies from `from` for `seconds`. `target` runs through `points`; after the last it starts again when `loops`.
-  Outcome fly(State from, double seconds, std::span<const GeoPoint> points, std::size_t& target, bool loops,
-              Vector believed) {
-    Outcome outcome;
-    State here = from;
-    double reckoned_lat = from.lat, reckoned_lon = from.lon, east = 0, north = 0;
-    const double until = from.t_s + seconds;
-    outcome.motion.closest = distance_near(here.lat, here.lon, flight_.goal);
-    if (outcome.motion.closest <= flight_.goal.radius.si()) outcome.motion.arrival_s = here.t_s;
-    bool first = true;
-    while (until - here.t_s > kNoMoreTime) {
-      Vector aim = towards(reckoned_lat, reckoned_lon, points[target]);
-      for (std::size_t passed = 0; aim.length() < radius_ && passed < points.size() && points.size() > 1; ++passed) {
-        if (target + 1 == points.size() && !loops) break;
-        target = (target + 1) % points.size();
-        aim = towards(reckoned_lat, reckoned_lon, points[target]);
-      }
-      double dt = std::min(kStep, until - here.t_s);
-      const double heading = steered(aim, believed, flight_.glider.believed_speed.si());
-      if (first) outcome.first_heading = heading;
-      first = false;
-      const double u_hat = flight_.glider.believed_speed.si();
-      const Vector reckoned{u_hat * std::sin(heading) + believed.east, u_hat * std::cos(heading) + believed.north};
-      dt = std::min(dt, until_ring(aim, reckoned));
-      if (!step(here, heading, dt, outcome.motion, east, north)) break;
-      const auto metric = LocalMetric::at(reckoned_lat + 0.5 * reckoned.north * dt / LocalMetric::kEquatorialRadius);
-      reckoned_lat += reckoned.north * dt / metric.meridian_radius;
-      reckoned_lon += reckoned.east * dt / metric.parallel_radius;
-    }
-    outcome.motion.end = here;
-    const double flown = here.t_s - from.t_s;
-    if (flown > 0) outcome.motion.mean = {MetresPerSecond{east / flown}, MetresPerSecond{north / flown}};
-    return outcome;
-  }
-
- private:
-  /// Seconds until the dead-reckoned position is just inside the ring around its aim; infinite when it never is.
-  [[nodiscard]] double until_ring(const Vector& aim, const Vector& v) const {
-    const double d = aim.length();
-    if (d <= radius_) return kStep;
-    const double towards_it = (aim.east * v.east + aim.north * v.north) / d;
-    const double sideways = (aim.east * v.north - aim.north * v.east) / d;
-    if (towards_it <= 0) return kStep;
-    const double speed2 = towards_it * towards_it + sideways * sideways;
-    const double miss = std::abs(sideways) * d / std::sqrt(speed2);
-    if (miss >= radius_) return kStep;
-    const double t = (d * towards_it - std::sqrt(speed2 * radius_ * radius_ - sideways * sideways * d * d)) / speed2;
-    return std::max(t + 0.01, 0.01);
-  }
-
-  /// One midpoint step of the true position. False when it is lost.
-  bool step(State& here, double heading, double dt, Motion& motion, double& east, double& north) {
-    const double u = flight_.glider.horizontal_speed.si();
-    const Vector through{u * std::sin(heading), u * std::cos(heading)};
-    const auto lose = [&](Lost why) {
-      motion.lost = why;
-      return false;
-    };
-    const auto c0 = waters_.ocean.dive.sample(here.at(), here.t_s);
-    if (!c0) return lose(lost_by(c0.error()));
-    const auto m0 = LocalMetric::at(here.lat);
-    const double mid_lat = here.lat + 0.5 * dt * (through.north + c0->current.north.si()) / m0.meridian_radius;
-    const double mid_lon = here.lon + 0.5 * dt * (through.east + c0->current.east.si()) / m0.parallel_radius;
-    const auto c = waters_.ocean.dive.sample(GeoPoint::from_kernel(mid_lat, mid_lon), here.t_s + 0.5 * dt);
-    if (!c) return lose(lost_by(c.error()));
-    const auto m = LocalMetric::at(mid_lat);
-    State next{here.lat + dt * (through.north + c->current.north.si()) / m.meridian_radius,
-               here.lon + dt * (through.east + c->current.east.si()) / m.parallel_radius, here.t_s + dt, here.margin};
-    if (!waters_.chart.segment_is_clear(here.lat, here.lon, next.lat, next.lon, here.margin))
-      return lose(Lost::aground);
-    if (here.margin < waters_.margin.si())
-      next.margin = std::clamp(waters_.chart.clearance(next.lat, next.lon), here.margin, waters_.margin.si());
-    east += c->current.east.si() * dt;
-    north += c->current.north.si() * dt;
-    note_arrival(here, next, motion);
-    here = next;
-    return true;
-  }
-
-  /// Steps are far shorter than a goal's disc is wide: the entry is found on the straight step.
-  void note_arrival(const State& from, const State& to, Motion& motion) const {
-    const double before = distance_near(from.lat, from.lon, flight_.goal),
-                 after = distance_near(to.lat, to.lon, flight_.goal);
-    motion.closest = std::min(motion.closest, after);
-    const double radius = flight_.goal.radius.si();
-    if (motion.arrival_s || after > radius) return;
-    const double share = before > after ? std::clamp((before - radius) / (before - after), 0.0, 1.0) : 0.0;
-    motion.arrival_s = from.t_s + share * (to.t_s - from.t_s);
-  }
-
-  const Flight& flight_;
-  const Waters& waters_;
-  double radius_;
-};
-
-Vector believed_in(const Flight& flight, const Current& before, int k) {
-  if (flight.glider.current_correction == 0) return {};
-  return k == 0 ? vector_of(flight.believed_current.value_or(Current{})) : vector_of(before);
+Current believed_in(const Flight& flight, const Current& met_before, int k) {
+  if (flight.glider.current_correction != 1) return {};
+  return k == 0 ? flight.believed_current.value_or(Current{}) : met_before;
 }
 
 /// Drift to the dive of stint k.
@@ -162,26 +26,129 @@ Motion drift(const State& from, const Flight& flight, const Waters& waters, int 
 
 double metres_between(const State& a, const State& b) { return local_offset(a.lat, a.lon, b.lat, b.lon).length(); }
 
+/// A heading held for a stint.
+Motion hold(const Flight& flight, const Waters& waters, const State& from, double seconds, Heading heading) {
+  return move(waters, waters.ocean.dive, from, seconds, WaterVelocity::of(heading, flight.glider.horizontal_speed),
+              &flight.goal);
+}
+
 /// The radius of a list by product.md 6 from its leg lengths.
-Metres list_radius(std::vector<double> legs, double drift, const ListOptions& options) {
+Metres list_radius(const std::vector<double>& legs, double drift, const ListOptions& options) {
   if (options.radius) return *options.radius;
   if (legs.empty()) return Metres{kSmallestRadius};
   std::vector<double> sorted = legs;
   std::sort(sorted.begin(), sorted.end());
   const double r = std::max({0.1 * sorted[sorted.size() / 2], kSmallestRadius, 2 * drift});
-  // Below the first leg: a waypoint inside its own ring is hit at once. Half of it leaves room for an early surfacing.
-  return Metres{std::ceil(std::max(10.0, std::min(r, std::max(kSmallestRadius, 0.5 * legs.front()))))};
+  return Metres{std::ceil(std::min(r, std::max(kSmallestRadius, 0.5 * legs.front())))};
 }
 
-Stint stint_of(const State& dive, const Dive::Outcome& flown) {
+Stint stint_of(const State& dive, const DiveFlown& flown) {
   Stint s;
   s.dive = dive.at();
   s.dive_s = dive.t_s;
   s.surface = flown.motion.end.at();
   s.surface_s = flown.motion.end.t_s;
-  s.heading = Heading{Radians{flown.first_heading}};
+  s.heading = flown.first_heading;
   s.dac = flown.motion.mean;
   return s;
+}
+
+bool in_sight(GeoPoint a, GeoPoint b, const Waters& waters) {
+  // Ends inside the margin do not hide each other: what can be kept there is kept.
+  const double margin =
+      std::min({waters.margin.si(), waters.chart.clearance(a).si() - 1.0, waters.chart.clearance(b).si() - 1.0});
+  const auto line = geodesic(a, b);
+  const int pieces = std::max(1, static_cast<int>(std::ceil(line.length.si() / kSightPiece)));
+  GeoPoint last = a;
+  for (int i = 1; i <= pieces; ++i) {
+    const auto next = i == pieces ? b : destination(a, line.departing, line.length * (static_cast<double>(i) / pieces));
+    if (!waters.chart.segment_is_clear(last.lat.radians(), last.lon.radians(), next.lat.radians(), next.lon.radians(),
+                                       margin))
+      return false;
+    last = next;
+  }
+  return true;
+}
+
+/// Points of a plan's way that the straight way from `from` to the goal needs around land and areas: from each point the
+/// farthest of `later` surfacings that is in sight, until the goal is. At most `at_most` points.
+std::vector<GeoPoint> way_points(GeoPoint from, std::span<const Stint> later, GeoPoint goal, const Waters& waters,
+                                 std::size_t at_most) {
+  std::vector<GeoPoint> points;
+  GeoPoint here = from;
+  std::size_t next = 0;
+  while (points.size() < at_most && !in_sight(here, goal, waters)) {
+    std::size_t farthest = later.size();
+    for (std::size_t i = next; i < later.size(); ++i)
+      if (in_sight(here, later[i].surface, waters)) farthest = i;
+    if (farthest == later.size()) break;
+    here = later[farthest].surface;
+    points.push_back(here);
+    next = farthest + 1;
+  }
+  return points;
+}
+
+/// How one stint that may arrive is steered.
+struct Steered {
+  std::vector<GeoPoint> points;  ///< of the list, as far as this stint can come to them
+  Metres radius;
+  bool to_goal{};  ///< the goal is all there is
+  DiveFlown flown;
+};
+
+DiveFlown fly_points(const Flight& flight, const Waters& waters, const State& from, double seconds, Steered& steered,
+                     Current believed) {
+  std::size_t target = 0;
+  return dive_by_law(flight, waters, from, seconds, steered.points, target, steered.radius, false, believed);
+}
+
+Metres goal_ring(const Flight& flight, GeoPoint from) {
+  const double way = distance(from, flight.goal.centre).si();
+  return Metres{std::ceil(std::clamp(0.1 * way, 10.0, std::max(10.0, 0.5 * flight.goal.radius.si())))};
+}
+
+/// Straight at the goal.
+Steered steer_to_goal(const Flight& flight, const Waters& waters, const State& from, double seconds, Current believed) {
+  Steered s;
+  s.points = {flight.goal.centre};
+  s.radius = goal_ring(flight, from.at());
+  s.to_goal = true;
+  s.flown = fly_points(flight, waters, from, seconds, s, believed);
+  return s;
+}
+
+/// On a heading that arrives when held: it is held until then, the goal comes next.
+Steered hold_until_goal(const Flight& flight, const Waters& waters, const State& from, double seconds, Heading wanted,
+                        double arrival_s, Current believed) {
+  const double held = std::max(1.0, arrival_s - from.t_s);
+  const double leg = aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}).length;
+  Steered s;
+  s.radius = list_radius({leg}, 0, {});
+  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius);
+  s.points = {aim.at};
+  if (!aim.ends_list) s.points.push_back(flight.goal.centre);
+  s.flown = fly_points(flight, waters, from, seconds, s, believed);
+  return s;
+}
+
+bool arrives_before(const Steered& s, const Steered& other) {
+  if (!s.flown.motion.arrival_s) return false;
+  return !other.flown.motion.arrival_s || *s.flown.motion.arrival_s <= *other.flown.motion.arrival_s;
+}
+
+/// The steering of a stint that can come to the goal: straight at it or by holding the heading, whichever is there first;
+/// none when neither is there within the stint.
+std::optional<Steered> steer_home(const Flight& flight, const Waters& waters, const State& from, double seconds,
+                                  Heading wanted, const Motion& ideal, Current believed) {
+  const double reach = (flight.glider.horizontal_speed + waters.ocean.dive.fastest()).si() * seconds;
+  if (distance_near(from.lat, from.lon, flight.goal) > reach + flight.goal.radius.si()) return std::nullopt;
+  auto straight = steer_to_goal(flight, waters, from, seconds, believed);
+  if (ideal.arrival_s) {
+    auto held = hold_until_goal(flight, waters, from, seconds, wanted, *ideal.arrival_s, believed);
+    if (!arrives_before(straight, held) && held.flown.motion.arrival_s) return held;
+  }
+  return straight.flown.motion.arrival_s ? std::optional{std::move(straight)} : std::nullopt;
 }
 
 }  // namespace
@@ -191,17 +158,19 @@ double early_share(int current_correction) { return current_correction == 1 ? 0.
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
               Metres radius) {
   const double u = glider.believed_speed.si();
-  Vector g{u * wanted.east(), u * wanted.north()};
-  if (glider.current_correction == 1) g = {g.east + believed.east.si(), g.north + believed.north.si()};
-  const double speed = g.length();
-  const bool against = wanted.east() * g.east + wanted.north() * g.north < 0;
+  double east = u * wanted.east(), north = u * wanted.north();
+  if (glider.current_correction == 1) {
+    east += believed.east.si();
+    north += believed.north.si();
+  }
+  const double speed = std::hypot(east, north);
+  const bool against = wanted.east() * east + wanted.north() * north < 0;
   Aim aim;
   aim.length = (1 - early_share(glider.current_correction)) * speed * seconds + radius.si();
   const double shortest = std::max(2 * radius.si(), kShortestLeg);
   aim.ends_list = against || aim.length < shortest;
   aim.length = std::max(aim.length, shortest);
-  // A null vector has no direction: the wanted heading serves.
-  auto direction = speed > 1e-9 ? Bearing::of(g.east, g.north) : Bearing{wanted.from_north()};
+  auto direction = speed > 1e-9 ? Bearing::of(east, north) : Bearing{wanted.from_north()};
   if (against) direction = direction + Radians{kPi};
   aim.at = destination(dive, direction, Metres{aim.length});
   return aim;
@@ -209,92 +178,56 @@ Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Curren
 
 namespace {
 
-/// Points of a plan's way that the straight way from `from` to the goal needs around land and areas: from each point the
-/// farthest predicted surfacing that is in sight, until the goal is.
-std::vector<GeoPoint> way_points(GeoPoint from, std::span<const Stint> later, GeoPoint goal, const Waters& waters,
-                                 std::size_t at_most) {
-  const auto in_sight = [&](GeoPoint a, GeoPoint b) {
-    const auto line = geodesic(a, b);
-    const int pieces = std::max(1, static_cast<int>(std::ceil(line.length.si() / 20'000.0)));
-    GeoPoint last = a;
-    for (int i = 1; i <= pieces; ++i) {
-      const auto next =
-          i == pieces ? b : destination(a, line.departing, line.length * (static_cast<double>(i) / pieces));
-      if (!waters.chart.segment_is_clear(last.lat.radians(), last.lon.radians(), next.lat.radians(), next.lon.radians(),
-                                         waters.margin.si()))
-        return false;
-      last = next;
-    }
-    return true;
-  };
-  std::vector<GeoPoint> points;
-  GeoPoint here = from;
-  std::size_t next = 0;
-  while (points.size() < at_most && !in_sight(here, goal)) {
-    std::size_t farthest = later.size();
-    for (std::size_t i = next; i < later.size(); ++i)
-      if (in_sight(here, later[i].surface)) farthest = i;
-    if (farthest == later.size()) break;
-    here = later[farthest].surface;
-    points.push_back(here);
-    next = farthest + 1;
-  }
-  return points;
+/// The list when the first stint arrives.
+model::WaypointList arriving_list(const Stint& stint, const Flight& flight, const Waters& waters,
+                                  const ListOptions& options) {
+  model::WaypointList list;
+  list.at_end = options.at_end;
+  const auto from = state_at(stint.dive, stint.dive_s, waters);
+  const double seconds = stint.surface_s - stint.dive_s;
+  const auto believed = believed_in(flight, {}, 0);
+  const auto ideal = hold(flight, waters, from, seconds, stint.heading);
+  auto steered = steer_home(flight, waters, from, seconds, stint.heading, ideal, believed);
+  if (!steered) steered = steer_to_goal(flight, waters, from, seconds, believed);
+  list.radius = options.radius.value_or(steered->radius);
+  for (const auto& p : steered->points) list.points.push_back({p, model::WaypointRole::aim});
+  if (list.points.back().at == flight.goal.centre) list.points.back().role = model::WaypointRole::goal;
+  if (list.points.size() > static_cast<std::size_t>(std::max(1, options.max_waypoints)))
+    list.points.erase(list.points.begin());
+  return list;
 }
 
 }  // namespace
 
 model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight, const Waters& waters,
                              const ListOptions& options) {
+  const auto goal = model::Waypoint{flight.goal.centre, model::WaypointRole::goal};
+  if (stints.empty()) return {{goal}, options.radius.value_or(goal_ring(flight, flight.fix)), options.at_end};
+  if (stints.front().arrives) return arriving_list(stints.front(), flight, waters, options);
+
+  const auto most = static_cast<std::size_t>(std::max(1, options.max_waypoints));
+  const bool corrects = flight.glider.current_correction == 1;
+  const auto aim_of = [&](std::size_t k, Metres radius) {
+    const Stint& s = stints[k];
+    const auto believed = believed_in(flight, k == 0 ? Current{} : stints[k - 1].dac, static_cast<int>(k));
+    return aim_point(s.dive, s.heading, flight.glider, believed, s.surface_s - s.dive_s, radius);
+  };
+  double largest_drift = 0;
+  std::vector<double> legs;
+  for (std::size_t k = 0; k < stints.size() && !stints[k].arrives && k + 1 < most; ++k) {
+    if (k > 0 && !corrects) break;
+    legs.push_back(aim_of(k, Metres{0}).length);
+    if (k + 1 < stints.size())
+      largest_drift = std::max(largest_drift, distance(stints[k].surface, stints[k + 1].dive).si());
+  }
   model::WaypointList list;
   list.at_end = options.at_end;
-  const auto goal = model::Waypoint{flight.goal.centre, model::WaypointRole::goal};
-  const auto most = static_cast<std::size_t>(std::max(1, options.max_waypoints));
-  double surface_drift = 0;
-  for (std::size_t k = 0; k + 1 < std::min(stints.size(), most); ++k)
-    surface_drift = std::max(surface_drift, distance(stints[k].surface, stints[k + 1].dive).si());
-
-  if (stints.empty() || stints.front().arrives) {
-    // The goal alone: the glider steers there and stays. Its radius keeps the goal's own disc as the place to be.
-    const auto from = stints.empty() ? flight.fix : stints.front().dive;
-    const double way = std::min(distance(flight.fix, flight.goal.centre).si(), distance(from, flight.goal.centre).si());
-    list.radius =
-        options.radius.value_or(Metres{std::clamp(0.1 * way, 10.0, std::max(10.0, 0.5 * flight.goal.radius.si()))});
-    list.points = {goal};
-    if (stints.empty() || fly_list(list, flight, waters).arrival_s) return list;
-    // Steering at the goal misses it here: the heading that arrives is held until it does.
-    const auto from_state = state_at(stints.front().dive, stints.front().dive_s, waters);
-    const double seconds = stints.front().surface_s - stints.front().dive_s;
-    const auto ideal = move(waters, waters.ocean.dive, from_state, seconds,
-                            WaterVelocity::of(stints.front().heading, flight.glider.horizontal_speed), &flight.goal);
-    const double held = ideal.arrival_s ? std::max(1.0, *ideal.arrival_s - from_state.t_s) : seconds;
-    const auto aim = aim_point(from, stints.front().heading, flight.glider, flight.believed_current.value_or(Current{}),
-                               held, list.radius);
-    list.points.insert(list.points.begin(), {aim.at, model::WaypointRole::aim});
-    if (aim.ends_list) list.points.pop_back();
-    return list;
-  }
-  const bool corrects = flight.glider.current_correction == 1;
-  std::vector<double> legs;
-  Current believed = flight.believed_current.value_or(Current{});
-  for (std::size_t k = 0; k < stints.size() && !stints[k].arrives && k + 1 < most; ++k) {
-    legs.push_back(aim_point(stints[k].dive, stints[k].heading, flight.glider, corrects ? believed : Current{},
-                             stints[k].surface_s - stints[k].dive_s, Metres{0})
-                       .length);
-    believed = stints[k].dac;
-    if (!corrects) break;
-  }
-  list.radius = list_radius(legs, surface_drift, options);
-  believed = flight.believed_current.value_or(Current{});
-  bool ended = false;
-  for (std::size_t k = 0; k < legs.size() && !ended; ++k) {
-    const auto aim = aim_point(stints[k].dive, stints[k].heading, flight.glider, corrects ? believed : Current{},
-                               stints[k].surface_s - stints[k].dive_s, list.radius);
+  list.radius = list_radius(legs, largest_drift, options);
+  for (std::size_t k = 0; k < legs.size(); ++k) {
+    const auto aim = aim_of(k, list.radius);
     list.points.push_back({aim.at, model::WaypointRole::aim});
-    ended = aim.ends_list;
-    believed = stints[k].dac;
+    if (aim.ends_list) return list;
   }
-  if (ended) return list;
   if (!corrects && list.points.size() + 1 < most)
     for (const auto& p : way_points(list.points.back().at, stints.subspan(1), flight.goal.centre, waters,
                                     most - list.points.size() - 1))
@@ -303,117 +236,172 @@ model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight
   return list;
 }
 
+namespace {
+
+/// Keeps the position nearest to the goal.
+class Closest {
+ public:
+  explicit Closest(GeoPoint start) : at_{start} {}
+  void note(const Motion& motion) {
+    if (motion.closest >= metres_) return;
+    metres_ = motion.closest;
+    at_ = motion.closest_at.at();
+  }
+  [[nodiscard]] GeoPoint at() const { return at_; }
+
+ private:
+  double metres_{1e18};
+  GeoPoint at_;
+};
+
+}  // namespace
+
 FlownList fly_list(const model::WaypointList& list, const Flight& flight, const Waters& waters) {
   FlownList flown;
+  flown.closest = flight.fix;
   if (list.points.empty()) return flown;
   std::vector<GeoPoint> points;
   for (const auto& w : list.points) points.push_back(w.at);
-  Dive dive{flight, waters, list.radius};
   State now = state_at(flight.fix, flight.fix_s, waters);
+  Closest closest{flight.fix};
   Current met;
   std::size_t target = 0;
-  for (int k = 0; k < kMostStints; ++k) {
+  for (int k = 0; k < kMostListStints; ++k) {
     const auto drifted = drift(now, flight, waters, k);
-    if (drifted.arrival_s && !flown.arrival_s) flown.arrival_s = drifted.arrival_s;
+    closest.note(drifted);
+    flown.closest = closest.at();
+    flown.arrival_s = drifted.arrival_s;
     flown.lost = drifted.lost;
     const double seconds = flight.schedule.stint_length(k).count();
     if (flown.lost || (flown.arrival_s && k > 0) || drifted.end.t_s + seconds > flight.horizon_s) return flown;
-    const auto outcome =
-        dive.fly(drifted.end, seconds, points, target, list.at_end == model::AtEnd::loop, believed_in(flight, met, k));
-    flown.stints.push_back(stint_of(drifted.end, outcome));
-    if (outcome.motion.arrival_s && !flown.arrival_s) flown.arrival_s = outcome.motion.arrival_s;
+    const auto dive = dive_by_law(flight, waters, drifted.end, seconds, points, target, list.radius,
+                                  list.at_end == model::AtEnd::loop, believed_in(flight, met, k));
+    closest.note(dive.motion);
+    flown.closest = closest.at();
+    if (!flown.arrival_s) flown.arrival_s = dive.motion.arrival_s;
+    flown.stints.push_back(stint_of(drifted.end, dive));
     flown.stints.back().arrives = flown.arrival_s.has_value();
-    flown.lost = outcome.motion.lost;
+    flown.lost = dive.motion.lost;
     if (flown.lost || flown.arrival_s) return flown;
-    now = outcome.motion.end;
-    met = outcome.motion.mean;
+    now = dive.motion.end;
+    met = dive.motion.mean;
   }
   return flown;
 }
 
 namespace {
 
-/// One stint towards its own aim, then towards the next one; the goal itself when that comes there in this stint.
-Dive::Outcome fly_stint(const Flight& flight, const Waters& waters, const State& from, double seconds,
-                        std::optional<Heading> wanted, std::optional<Heading> next, Vector believed,
-                        const Motion& ideal) {
-  const Current c{MetresPerSecond{believed.east}, MetresPerSecond{believed.north}};
-  std::size_t target = 0;
-  // Shorter than two stints to go: would steering to the goal itself come there?
-  const double reach =
-      (flight.glider.horizontal_speed.si() + waters.ocean.dive.fastest().si()) * seconds + flight.goal.radius.si();
-  if (!wanted || distance_near(from.lat, from.lon, flight.goal) <= reach) {
-    const std::array<GeoPoint, 1> goal{flight.goal.centre};
-    Dive straight{flight, waters, Metres{std::max(10.0, 0.25 * flight.goal.radius.si())}};
-    auto outcome = straight.fly(from, seconds, goal, target, false, believed);
-    outcome.to_goal = true;
-    if (!wanted || (outcome.motion.arrival_s && !outcome.motion.lost &&
-                    (!ideal.arrival_s || *outcome.motion.arrival_s <= *ideal.arrival_s + 0.02 * seconds)))
-      return outcome;
-  }
-  // A heading that arrives is held until it arrives; then the goal is the target.
-  const double held = ideal.arrival_s ? std::max(1.0, *ideal.arrival_s - from.t_s) : seconds;
-  const auto probe = aim_point(from.at(), *wanted, flight.glider, c, held, Metres{0});
-  const Metres radius{std::max(kSmallestRadius, std::min(0.1 * probe.length, 0.5 * probe.length))};
-  const auto aim = aim_point(from.at(), *wanted, flight.glider, c, held, radius);
-  std::vector<GeoPoint> points{aim.at};
-  if (!aim.ends_list) {
-    // With correction 0 the file holds the first aim point and then the goal: aim points there turn later dives back.
-    if (ideal.arrival_s || !next || flight.glider.current_correction == 0) {
-      points.push_back(flight.goal.centre);
-    } else {
-      points.push_back(aim_point(ideal.end.at(), *next, flight.glider, ideal.mean, seconds, radius).at);
-      points.push_back(flight.goal.centre);
+/// A flight with a new list at each surfacing.
+class Relay {
+ public:
+  /// `foreseen` are the stints of an earlier pass: what ground points are chosen from. Empty in the first pass.
+  Relay(const Helm& helm, const Flight& flight, const Waters& waters, std::span<const Stint> foreseen)
+      : helm_{helm}, flight_{flight}, waters_{waters}, foreseen_{foreseen}, closest_{flight.fix} {}
+
+  FlownList fly() {
+    State now = state_at(flight_.fix, flight_.fix_s, waters_);
+    for (int k = 0; k < kMostStints; ++k) {
+      const auto drifted = drift(now, flight_, waters_, k);
+      closest_.note(drifted);
+      if (drifted.arrival_s && *drifted.arrival_s <= flight_.horizon_s) {
+        flown_.arrival_s = drifted.arrival_s;
+        if (!flown_.stints.empty()) flown_.stints.back().arrives = true;
+        break;
+      }
+      flown_.lost = drifted.lost;
+      if (flown_.lost || drifted.end.t_s >= flight_.horizon_s || !fly_stint(k, drifted.end)) break;
+      now = last_.end;
     }
+    flown_.closest = closest_.at();
+    return std::move(flown_);
   }
-  Dive dive{flight, waters, radius};
-  return dive.fly(from, seconds, points, target, false, believed);
-}
+  /// True when somewhere land or an area hides the goal from the end of a leg, so that a list has ground points.
+  [[nodiscard]] bool needs_ground_points() const { return needs_ground_points_; }
+
+ private:
+  /// False when the flight ends with, or before, this stint.
+  bool fly_stint(int k, const State& from) {
+    const double seconds = flight_.schedule.stint_length(k).count();
+    const auto believed = believed_in(flight_, last_.mean, k);
+    const auto wanted = helm_(k, from.at(), from.t_s);
+    std::optional<Steered> steered;
+    if (!wanted) {
+      steered = steer_to_goal(flight_, waters_, from, seconds, believed);
+    } else {
+      const auto ideal = hold(flight_, waters_, from, seconds, *wanted);
+      steered = steer_home(flight_, waters_, from, seconds, *wanted, ideal, believed);
+      if (!steered) steered = steer_on(k, from, seconds, *wanted, ideal, believed);
+    }
+    const Motion& motion = steered->flown.motion;
+    const bool too_late = (motion.arrival_s ? *motion.arrival_s : from.t_s + seconds) > flight_.horizon_s;
+    if (too_late) return false;
+    if (motion.lost && !motion.arrival_s) {
+      flown_.lost = motion.lost;
+      return false;
+    }
+    closest_.note(motion);
+    auto stint = stint_of(from, steered->flown);
+    if (!steered->to_goal) stint.heading = *wanted;
+    const auto held = hold(flight_, waters_, from, motion.end.t_s - from.t_s, stint.heading);
+    stint.steering_error = Metres{metres_between(held.end, motion.end)};
+    stint.arrives = motion.arrival_s.has_value();
+    flown_.arrival_s = motion.arrival_s;
+    flown_.stints.push_back(stint);
+    last_ = motion;
+    return !flown_.arrival_s;
+  }
+
+  /// Towards w_1 and then the second point of the list that this surfacing brings.
+  Steered steer_on(int k, const State& from, double seconds, Heading wanted, const Motion& ideal, Current believed) {
+    const double leg = aim_point(from.at(), wanted, flight_.glider, believed, seconds, Metres{0}).length;
+    Steered s;
+    s.radius = list_radius({leg}, 0, {});
+    const auto aim = aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius);
+    s.points = {aim.at};
+    if (!aim.ends_list) {
+      if (const auto second = second_point(k, aim.at, ideal, s.radius)) s.points.push_back(*second);
+      s.points.push_back(flight_.goal.centre);
+    }
+    s.flown = fly_points(flight_, waters_, from, seconds, s, believed);
+    return s;
+  }
+
+  /// What follows w_1 before the goal.
+  std::optional<GeoPoint> second_point(int k, GeoPoint first, const Motion& ideal, Metres radius) {
+    if (flight_.glider.current_correction != 1) {
+      const auto later = foreseen_.subspan(std::min(foreseen_.size(), static_cast<std::size_t>(k) + 1));
+      const auto ground = way_points(first, later, flight_.goal.centre, waters_, 1);
+      needs_ground_points_ = needs_ground_points_ || !ground.empty() || !in_sight(first, flight_.goal.centre, waters_);
+      return ground.empty() ? std::nullopt : std::optional{ground.front()};
+    }
+    if (ideal.lost) return std::nullopt;
+    const auto dive = drift(ideal.end, flight_, waters_, k + 1);
+    if (dive.lost) return std::nullopt;
+    const auto next = helm_(k + 1, dive.end.at(), dive.end.t_s);
+    if (!next) return std::nullopt;
+    const double seconds = flight_.schedule.stint_length(k + 1).count();
+    return aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius).at;
+  }
+
+  const Helm& helm_;
+  const Flight& flight_;
+  const Waters& waters_;
+  std::span<const Stint> foreseen_;
+  Closest closest_;
+  FlownList flown_;
+  Motion last_;
+  bool needs_ground_points_{};
+};
 
 }  // namespace
 
 FlownList fly_helm(const Helm& helm, const Flight& flight, const Waters& waters) {
-  FlownList flown;
-  State now = state_at(flight.fix, flight.fix_s, waters);
-  Current met;
-  for (int k = 0; k < kMostStints; ++k) {
-    const auto drifted = drift(now, flight, waters, k);
-    if (drifted.arrival_s) {
-      flown.arrival_s = drifted.arrival_s;
-      if (!flown.stints.empty()) flown.stints.back().arrives = true;
-      return flown;
-    }
-    flown.lost = drifted.lost;
-    const double seconds = flight.schedule.stint_length(k).count();
-    if (flown.lost || drifted.end.t_s >= flight.horizon_s) return flown;
-    const auto wanted = helm(k, drifted.end.at(), drifted.end.t_s);
-    Motion ideal;
-    std::optional<Heading> next;
-    if (wanted) {
-      ideal = move(waters, waters.ocean.dive, drifted.end, seconds,
-                   WaterVelocity::of(*wanted, flight.glider.horizontal_speed), &flight.goal);
-      if (!ideal.lost) next = helm(k + 1, ideal.end.at(), ideal.end.t_s);
-    }
-    const auto outcome =
-        fly_stint(flight, waters, drifted.end, seconds, wanted, next, believed_in(flight, met, k), ideal);
-    const bool too_late = outcome.motion.arrival_s ? *outcome.motion.arrival_s > flight.horizon_s
-                                                   : outcome.motion.end.t_s > flight.horizon_s;
-    if (too_late) return flown;
-    auto stint = stint_of(drifted.end, outcome);
-    if (wanted) {
-      stint.steering_error = Metres{ideal.lost ? 0.0 : metres_between(ideal.end, outcome.motion.end)};
-      if (!outcome.to_goal) stint.heading = *wanted;
-    }
-    stint.arrives = outcome.motion.arrival_s.has_value();
-    flown.arrival_s = outcome.motion.arrival_s;
-    flown.lost = outcome.motion.arrival_s ? std::nullopt : outcome.motion.lost;
-    if (flown.lost) return flown;  // a stint that ends aground is no part of a plan
-    flown.stints.push_back(stint);
-    if (flown.arrival_s) return flown;
-    now = outcome.motion.end;
-    met = outcome.motion.mean;
-  }
-  return flown;
+  Relay relay{helm, flight, waters, {}};
+  auto flown = relay.fly();
+  if (!relay.needs_ground_points()) return flown;
+  // The ground points of a list are surfacings of the plan: a first pass foresees them.
+  const auto foreseen = flown.stints;
+  return Relay{helm, flight, waters, foreseen}.fly();
 }
 
 FlownList fly_headings(std::span<const Heading> wanted, const Flight& flight, const Waters& waters) {

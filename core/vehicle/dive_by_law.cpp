@@ -1,0 +1,166 @@
+#include "core/vehicle/dive_by_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidehelm::vehicle {
+
+namespace {
+
+constexpr double kStep = 120.0;       // seconds
+constexpr double kNoMoreTime = 1e-6;  // seconds
+constexpr double kIntoRing = 0.01;    // seconds past a ring's crossing
+constexpr double kNear = 50'000.0;    // metres: where a plane is good enough for a bearing
+
+struct Vector {
+  double east{}, north{};
+  [[nodiscard]] double length() const { return std::hypot(east, north); }
+};
+
+/// Distance and direction of a waypoint, as a vector in the plane whose north is the position's own. The offset of
+/// local_offset is seen from the middle of the way, where the meridian has turned by half the convergence.
+Vector seen_from(double lat, double lon, GeoPoint to) {
+  const double to_lat = to.lat.radians(), to_lon = to.lon.radians();
+  const auto offset = local_offset(lat, lon, to_lat, to_lon);
+  if (offset.length() > kNear) {
+    const auto line = geodesic(GeoPoint::from_kernel(lat, lon), to);
+    return {line.length.si() * line.departing.east(), line.length.si() * line.departing.north()};
+  }
+  const double half = 0.5 * std::remainder(to_lon - lon, 2 * kPi) * std::sin(0.5 * (lat + to_lat));
+  return {offset.east * std::cos(half) - offset.north * std::sin(half),
+          offset.east * std::sin(half) + offset.north * std::cos(half)};
+}
+
+class Dive {
+ public:
+  Dive(const Flight& flight, const Waters& waters, const State& from, Metres radius, Current believed)
+      : flight_{flight},
+        waters_{waters},
+        here_{from},
+        reckoned_lat_{from.lat},
+        reckoned_lon_{from.lon},
+        radius_{radius.si()},
+        believed_{believed} {
+    motion_.closest_at = from;
+    motion_.closest = distance_near(from.lat, from.lon, flight.goal);
+    if (motion_.closest <= flight.goal.radius.si()) motion_.arrival_s = from.t_s;
+  }
+
+  DiveFlown fly(double seconds, std::span<const GeoPoint> points, std::size_t& target, bool loops) {
+    DiveFlown flown;
+    const double begin = here_.t_s, until = begin + seconds, u_hat = flight_.glider.believed_speed.si();
+    bool first = true;
+    while (until - here_.t_s > kNoMoreTime) {
+      const Vector aim = next_aim(points, target, loops);
+      const double heading = steered_heading(std::atan2(aim.east, aim.north), believed_, flight_.glider.believed_speed);
+      if (first) flown.first_heading = Heading{Radians{heading}};
+      first = false;
+      const Vector reckoned{u_hat * std::sin(heading) + believed_.east.si(),
+                            u_hat * std::cos(heading) + believed_.north.si()};
+      const double dt = std::min({kStep, until - here_.t_s, until_ring(aim, reckoned)});
+      if (!step(heading, dt)) break;
+      reckon(reckoned, dt);
+    }
+    motion_.end = here_;
+    const double time = here_.t_s - begin;
+    if (time > 0) motion_.mean = {MetresPerSecond{east_ / time}, MetresPerSecond{north_ / time}};
+    flown.motion = motion_;
+    return flown;
+  }
+
+ private:
+  /// Passes over the points that are hit; gives the way to the one to steer to.
+  [[nodiscard]] Vector next_aim(std::span<const GeoPoint> points, std::size_t& target, bool loops) const {
+    Vector aim = seen_from(reckoned_lat_, reckoned_lon_, points[target]);
+    for (std::size_t passed = 0; aim.length() < radius_ && passed < points.size() && points.size() > 1; ++passed) {
+      if (target + 1 == points.size() && !loops) break;
+      target = (target + 1) % points.size();
+      aim = seen_from(reckoned_lat_, reckoned_lon_, points[target]);
+    }
+    return aim;
+  }
+
+  /// Seconds until the dead-reckoned position is inside the ring around its aim; a whole step when it is not soon.
+  [[nodiscard]] double until_ring(const Vector& aim, const Vector& v) const {
+    const double d = aim.length();
+    if (d <= radius_) return kStep;
+    const double towards_it = (aim.east * v.east + aim.north * v.north) / d;
+    const double sideways = (aim.east * v.north - aim.north * v.east) / d;
+    const double speed2 = towards_it * towards_it + sideways * sideways;
+    if (towards_it <= 0 || std::abs(sideways) * d >= radius_ * std::sqrt(speed2)) return kStep;
+    const double root = std::sqrt(speed2 * radius_ * radius_ - sideways * sideways * d * d);
+    return std::max((d * towards_it - root) / speed2, 0.0) + kIntoRing;
+  }
+
+  void reckon(const Vector& v, double dt) {
+    const auto start = LocalMetric::at(reckoned_lat_);
+    const auto metric = LocalMetric::at(reckoned_lat_ + 0.5 * v.north * dt / start.meridian_radius);
+    reckoned_lat_ += v.north * dt / metric.meridian_radius;
+    reckoned_lon_ += v.east * dt / metric.parallel_radius;
+  }
+
+  bool lose(Lost why) {
+    motion_.lost = why;
+    return false;
+  }
+
+  /// One midpoint step of the true position. False when it is lost; the position then stays where the step began.
+  bool step(double heading, double dt) {
+    const double u = flight_.glider.horizontal_speed.si();
+    const Vector through{u * std::sin(heading), u * std::cos(heading)};
+    const auto c0 = waters_.ocean.dive.sample(here_.at(), here_.t_s);
+    if (!c0) return lose(lost_by(c0.error()));
+    const auto m0 = LocalMetric::at(here_.lat);
+    const double lat = here_.lat + 0.5 * dt * (through.north + c0->current.north.si()) / m0.meridian_radius;
+    const double lon = here_.lon + 0.5 * dt * (through.east + c0->current.east.si()) / m0.parallel_radius;
+    const auto c = waters_.ocean.dive.sample(GeoPoint::from_kernel(lat, lon), here_.t_s + 0.5 * dt);
+    if (!c) return lose(lost_by(c.error()));
+    const auto m = LocalMetric::at(lat);
+    State next{here_.lat + dt * (through.north + c->current.north.si()) / m.meridian_radius,
+               here_.lon + dt * (through.east + c->current.east.si()) / m.parallel_radius, here_.t_s + dt,
+               here_.margin};
+    if (!waters_.chart.segment_is_clear(here_.lat, here_.lon, next.lat, next.lon, here_.margin))
+      return lose(Lost::aground);
+    if (here_.margin < waters_.margin.si()) next.margin = gained_margin(next, here_.margin, waters_);
+    east_ += c->current.east.si() * dt;
+    north_ += c->current.north.si() * dt;
+    note_arrival(next);
+    here_ = next;
+    return true;
+  }
+
+  void note_arrival(const State& to) {
+    const double near = distance_near(to.lat, to.lon, flight_.goal);
+    if (near < motion_.closest) {
+      motion_.closest = near;
+      motion_.closest_at = to;
+    }
+    if (motion_.arrival_s) return;
+    const auto fraction = entry_into(flight_.goal, here_.lat, here_.lon, to.lat, to.lon);
+    if (fraction) motion_.arrival_s = here_.t_s + *fraction * (to.t_s - here_.t_s);
+  }
+
+  const Flight& flight_;
+  const Waters& waters_;
+  State here_;
+  double reckoned_lat_, reckoned_lon_;
+  double radius_;
+  Current believed_;
+  Motion motion_;
+  double east_{}, north_{};  ///< integral of the current met, metres
+};
+
+}  // namespace
+
+double steered_heading(double bearing, Current believed, MetresPerSecond believed_speed) {
+  const double cross = believed.east.si() * std::cos(bearing) - believed.north.si() * std::sin(bearing);
+  return bearing - std::asin(std::clamp(cross / believed_speed.si(), -1.0, 1.0));
+}
+
+DiveFlown dive_by_law(const Flight& flight, const Waters& waters, const State& from, double seconds,
+                      std::span<const GeoPoint> points, std::size_t& target, Metres radius, bool loops,
+                      Current believed) {
+  return Dive{flight, waters, from, radius, believed}.fly(seconds, points, target, loops);
+}
+
+}  // namespace glidehelm::vehicle

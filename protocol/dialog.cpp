@@ -41,6 +41,11 @@ std::optional<Location>& slot_of(SurfaceBlock& block, Say say) {
 
 bool is_location(Say say) { return say == Say::dr || say == Say::too_far || say == Say::invalid || say == Say::gps; }
 
+/// Numbers that steer: a control character in their line may be what noise made of a digit.
+bool is_measured(Say say) {
+  return is_location(say) || say == Say::curr_time || say == Say::sensor || say == Say::until_diving;
+}
+
 bool is_prompt(Say say) { return say == Say::gliderdos || say == Say::gliderlab || say == Say::scidos; }
 
 }  // namespace
@@ -83,6 +88,7 @@ std::vector<DialogEvent> DialogReader::end(Instant heard) {
   splitter_.end(*this);
   finish_block();
   last_text_.clear();
+  ends_later_ = false;
   greeting_ = Greeting::none;
   name_.clear();
   water_ = WaterState::unknown;
@@ -108,6 +114,9 @@ void DialogReader::take_line(const Line& line) {
   line_ = line.number;
   facts_.clear();
   finder_->find(line.text, line.joined_at, facts_);
+  if (line.altered)
+    for (auto& fact : facts_)
+      if (is_measured(fact.say)) fact.whole = false;
   if (line.cut) {
     // Only a prompt is complete without a line end; of anything else that was cut nothing is used.
     std::erase_if(facts_, [](const Fact& f) { return !is_prompt(f.say); });
@@ -117,11 +126,16 @@ void DialogReader::take_line(const Line& line) {
     return;
   }
   if (line.after_block && join_with_last(line)) return;
+  if (ends_later_) finish_connection_block();
   const bool any_whole = std::any_of(facts_.begin(), facts_.end(), [](const Fact& f) { return f.whole; });
   const bool ends = ends_connection_block(line.text);
   const bool damaged = apply_all();
   if (damaged) note_damage(line.text);
-  if (ends && open_ && !block_.at_surface && has_location()) finish_block();
+  // A line that says nothing may be the first half of a torn location: the next line tells.
+  if (ends && facts_.empty())
+    ends_later_ = true;
+  else if (ends)
+    finish_connection_block();
   if (any_whole || is_blank(line.text)) {
     last_text_.clear();
   } else {
@@ -144,6 +158,7 @@ bool DialogReader::join_with_last(const Line& line) {
     if (open_ && !block_.damaged.empty() && block_.damaged.back() == last_text_) block_.damaged.pop_back();
     block_.gps_damaged = false;
   }
+  ends_later_ = false;
   facts_ = std::move(facts);
   static_cast<void>(apply_all());
   last_text_.clear();
@@ -172,6 +187,11 @@ bool DialogReader::ends_connection_block(std::string_view text) const {
     return is_location(f.say) || f.say == Say::sensor || f.say == Say::noise || f.say == Say::oddity ||
            f.say == Say::curr_time || f.say == Say::vehicle || f.say == Say::iridium;
   });
+}
+
+void DialogReader::finish_connection_block() {
+  ends_later_ = false;
+  if (open_ && !block_.at_surface && has_location()) finish_block();
 }
 
 void DialogReader::apply(Fact& fact) {
@@ -263,6 +283,7 @@ void DialogReader::apply(Fact& fact) {
       return;
     case Say::noise:
     case Say::oddity:
+    case Say::login:
       return;
   }
   changed_ = open_;

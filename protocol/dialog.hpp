@@ -60,6 +60,7 @@ class DialogReader final : private LineSink {
   void apply_damaged(Say say);
   void note_damage(std::string_view text);
   [[nodiscard]] bool ends_connection_block(std::string_view text) const;
+  void finish_connection_block();
 
   void carrier(const Fact& fact);
   void open_connection();
@@ -87,6 +88,7 @@ class DialogReader final : private LineSink {
   // the line before, as long as it may be the first half of a line that a dockserver block tore apart
   std::string last_text_;
   bool last_damaged_{};
+  bool ends_later_{};  ///< it ends the connection block unless it is such a half
 
   // the connection
   enum class Greeting { none, carrier, console } greeting_{};

@@ -10,7 +10,7 @@ namespace glidehelm::protocol {
 
 namespace {
 
-constexpr std::array<std::pair<Say, std::string_view>, 31> kPhrases{{
+constexpr std::array<std::pair<Say, std::string_view>, 32> kPhrases{{
     {Say::connection_event, "Connection Event:"},
     {Say::iridium, "Iridium console active and ready"},
     {Say::vehicle, "Vehicle Name:"},
@@ -42,6 +42,7 @@ constexpr std::array<std::pair<Say, std::string_view>, 31> kPhrases{{
     {Say::heard_a, "I heard a "},
     {Say::noise, ":OOD:"},
     {Say::oddity, "DRIVER_ODDITY:"},
+    {Say::login, "No login script found"},
 }};
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }

@@ -52,6 +52,7 @@ enum class Say : std::size_t {
   heard_a,
   noise,
   oddity,
+  login,
   reread,
   transfer_starts,
   transfer_done,

@@ -98,11 +98,15 @@ std::string ddmm_from_units(std::int64_t units) {
 }
 
 std::string ddmm(Latitude lat) { return ddmm_from_units(minute_units(lat.degrees())); }
-std::string ddmm(Longitude lon) { return ddmm_from_units(minute_units(lon.degrees())); }
+std::string ddmm(Longitude lon) {
+  const auto units = minute_units(lon.degrees());
+  return ddmm_from_units(units == 180 * kUnitsPerDegree ? -units : units);  // one meridian, one text
+}
 
 bool is_dialog_coordinate(std::string_view text) {
   if (!text.empty() && text.front() == '-') text.remove_prefix(1);
   if (text.size() < 5 || text[text.size() - 4] != '.') return false;
+  if (text.front() == '0' && text.size() > 5) return false;  // printf pads with blanks
   for (std::size_t i = 0; i < text.size(); ++i)
     if (i != text.size() - 4 && !is_digit(text[i])) return false;
   return true;

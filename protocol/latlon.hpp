@@ -46,12 +46,12 @@ std::int64_t minute_units(double degrees);
 
 /// `%.4f` of sign · (100·degrees + minutes): `-11741.8000`, `-30.5000` for 0°30.5′ S. Zero has no sign.
 std::string ddmm(Latitude lat);
-/// As above; −180° is written `-18000.0000`.
+/// As above; the antimeridian is written `-18000.0000`, also when rounding reaches it from the east.
 std::string ddmm(Longitude lon);
 /// The text of a number of 1e-4 minutes.
 std::string ddmm_from_units(std::int64_t units);
 
-/// The dialog's `%9.3f`: exactly three decimals, no '+', no exponent. Says nothing about range.
+/// The dialog's `%9.3f`: exactly three decimals, no '+', no exponent, no leading zero. Says nothing about range.
 bool is_dialog_coordinate(std::string_view text);
 
 }  // namespace glidehelm::protocol

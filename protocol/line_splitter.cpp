@@ -116,9 +116,14 @@ void LineSplitter::clean_odd(std::string_view text, unsigned kinds, LineSink& si
   zmodem_ = false;
   std::string plain;
   plain.reserve(text.size());
-  for (const char c : text)
-    if ((kKinds[static_cast<unsigned char>(c)] & kControl) == 0) plain.push_back(c);
+  for (const char c : text) {
+    if ((kKinds[static_cast<unsigned char>(c)] & kControl) == 0)
+      plain.push_back(c);
+    else if (c != 0 && c != 0x7f)
+      altered_ = true;
+  }
   in_block_ ? inside_block(plain, sink) : outside_block(plain, sink);
+  if (!in_block_) altered_ = false;  // a block passes it on to the line that it interrupts
 }
 
 void LineSplitter::outside_block(std::string_view text, LineSink& sink) {
@@ -190,6 +195,7 @@ void LineSplitter::give(std::string_view text, int number, LineSink& sink) {
   line.joined_at = std::exchange(joined_at_, Line::kWhole);
   line.after_block = std::exchange(after_block_, false);
   line.cut = ending_;
+  line.altered = std::exchange(altered_, false);
   sink.take_line(line);
 }
 

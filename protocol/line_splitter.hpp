@@ -13,6 +13,7 @@ struct Line {
   std::string_view text;          ///< without line end and control characters; valid during the call only
   int number{};                   ///< of its first byte in the stream, from 1; counts '\n' only, as editors do
   std::size_t joined_at{kWhole};  ///< where a dockserver block was cut out of the middle of the line
+  bool altered{};                 ///< control characters other than NUL and DEL were dropped: one may have been a digit
   bool after_block{};             ///< a dockserver block stood between the line before and this one
   bool cut{};                     ///< ends with the connection or before a marker, not with a line end
 };
@@ -78,6 +79,7 @@ class LineSplitter {
   DockserverBlock block_;
   std::string prefix_;  ///< text of the line that the block interrupted
   int prefix_number_{};
+  bool altered_{};      ///< of the line that is cleaned
   bool after_block_{};  ///< a block has just ended
   std::size_t joined_at_{Line::kWhole};
 

@@ -143,7 +143,7 @@ void check_list(const Mafile& file, const MafileOptions& options, ProblemList& p
           0, 0, "missing-b-arg", Weight::doubt,
           std::string{rule.name} + " is not given: the glider takes masterdata's default, not the mission's value");
   const auto* initial = file.b_arg("initial_wpt");
-  if (initial != nullptr && initial->value && *initial->value >= listed && *initial->value <= 7)
+  if (initial != nullptr && initial->value && listed > 0 && *initial->value >= listed && *initial->value <= 7)
     problems.add(initial->line, initial->column, "range", Weight::doubt,
                  "initial_wpt is " + initial->text + ", but " + std::to_string(listed) + " waypoints are listed");
   if (file.b_arg("end_action") == nullptr) problems.add(0, 0, "missing-b-arg", Weight::note, "end_action is not given");

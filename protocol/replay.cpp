@@ -60,12 +60,14 @@ void merge(ReplayedFix& fix, ReplayedFix&& again) {
   for (auto& [name, value] : again.sensors) fix.sensors[name] = value;
 }
 
-/// S4 for fixes of which some were refused: the same texts, and times that differ by less than 2 s. Without times the
-/// texts and the rule decide.
+/// S4 for prints of which some were refused: the same texts, and times that differ by less than 2 s. A print without a
+/// time is the used fix of the same texts, or the refusal of the same texts and reason; a line that was too damaged to
+/// have texts is like no other.
 bool is_same(const ReplayedFix& a, const ReplayedFix& b) {
+  if (a.lat_ddmm.empty() || b.lat_ddmm.empty()) return a.line == b.line;
   if (a.lat_ddmm != b.lat_ddmm || a.lon_ddmm != b.lon_ddmm || a.glider != b.glider) return false;
   if (a.fix_time && b.fix_time) return std::abs(between(*a.fix_time, *b.fix_time).count()) < 2.0;
-  return !a.fix_time && !b.fix_time && a.rule == b.rule;
+  return a.rule.empty() != b.rule.empty() || a.reason == b.reason;
 }
 
 bool has_position(const ReplayedFix& fix) { return fix.lat_deg && fix.lon_deg; }
@@ -89,11 +91,8 @@ class Tally {
     } else if (refused == nullptr) {
       (fix.rule.empty() ? used_ : refused_).push_back(std::move(fix));
     } else if (fix.rule.empty()) {
-      refused->rule.clear();
-      refused->reason.clear();
-      merge(*refused, std::move(fix));
-      used_.push_back(std::move(*refused));
       refused_.erase(refused_.begin() + (refused - refused_.data()));
+      used_.push_back(std::move(fix));
     } else {
       merge(*refused, std::move(fix));
     }

@@ -1,0 +1,71 @@
+#include "protocol/phrases.hpp"
+
+#include <catch2/catch.hpp>
+#include <random>
+#include <string>
+#include <tuple>
+
+using namespace glidehelm::protocol;
+
+namespace {
+
+using Found = std::vector<std::tuple<std::size_t, std::size_t, std::size_t>>;
+
+Found found(const Phrases& phrases, std::string_view text) {
+  Found all;
+  phrases.find(text, [&](const Phrases::Hit& h) { all.emplace_back(h.phrase, h.begin, h.end); });
+  return all;
+}
+
+/// The definition, by brute force: at each end the longest phrase that ends there, of equal ones the last.
+Found by_definition(const std::vector<std::string_view>& phrases, std::string_view text) {
+  Found all;
+  for (std::size_t end = 1; end <= text.size(); ++end) {
+    std::size_t best = phrases.size();
+    for (std::size_t i = 0; i < phrases.size(); ++i)
+      if (!phrases[i].empty() && text.substr(0, end).ends_with(phrases[i]) &&
+          (best == phrases.size() || phrases[i].size() >= phrases[best].size()))
+        best = i;
+    if (best != phrases.size()) all.emplace_back(best, end - phrases[best].size(), end);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("every phrase is found wherever it stands") {
+  const Phrases phrases{{"GPS Location:", "sensor:", "MissionName:", "Mission"}};
+  CHECK(found(phrases, "xsensor:GPS Location:") == Found{{1, 1, 8}, {0, 8, 21}});
+  CHECK(found(phrases, "MissionName:") == Found{{3, 0, 7}, {2, 0, 12}});
+  CHECK(found(phrases, "GPS GPS Location:") == Found{{0, 4, 17}});
+  CHECK(found(phrases, "GPS Locatio").empty());
+  CHECK(found(phrases, "").empty());
+}
+
+TEST_CASE("bytes beyond ASCII and NUL are bytes like others") {
+  const std::string text{
+      "a\0\xff"
+      "b\xff",
+      5};
+  const Phrases phrases{
+      {"\xff"
+       "b"}};
+  CHECK(found(phrases, text) == Found{{0, 2, 4}});
+}
+
+TEST_CASE("the automaton agrees with brute force on random texts of few letters") {
+  std::mt19937 rng{7};  // few letters make overlaps, fall-backs and phrases inside phrases common
+  const auto word = [&](std::size_t most) {
+    std::string s;
+    for (std::size_t n = rng() % (most + 1); n > 0; --n) s += static_cast<char>('a' + rng() % 3);
+    return s;
+  };
+  for (int round = 0; round < 300; ++round) {
+    std::vector<std::string> owned;
+    for (int i = 0; i < 6; ++i) owned.push_back(word(5));
+    const std::vector<std::string_view> views(owned.begin(), owned.end());
+    const Phrases phrases{views};
+    const auto text = word(60);
+    REQUIRE(found(phrases, text) == by_definition(views, text));
+  }
+}

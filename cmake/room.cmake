@@ -18,11 +18,12 @@ function(glidehelm_room name)
   add_library(glidehelm::${name} ALIAS glidehelm_${name})
 endfunction()
 
-# A program of one main file.
+# A program of one main file. All programs lie in one folder, as they do when installed: they look for each other there.
 function(glidehelm_program name)
   cmake_parse_arguments(PROGRAM "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${PROGRAM_SOURCES})
   glidehelm_flags(${name})
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${PROGRAM_LINKS})
   install(TARGETS ${name} RUNTIME)

@@ -30,8 +30,8 @@ Service::Service(config::Configuration configuration, world::World world, world:
     : configuration_{std::move(configuration)}, world_{world}, simulated_{simulated}, log_{log} {}
 
 Service::~Service() {
-  worker_.reset();  // its jobs post into sessions
-  sessions_.clear();
+  sessions_.clear();  // each stops its jobs, so the worker outlives them
+  worker_.reset();
 }
 
 int Service::run() {

@@ -262,7 +262,9 @@ Expected<std::unique_ptr<Listener>, NetError> RealNet::listen_unix(const std::st
   error_code error;
   probe.connect(Local::endpoint{path}, error);
   if (!error) return refused("another process listens there");
-  if (error == asio::error::connection_refused) ::unlink(path.c_str());
+  struct ::stat found {};
+  const bool is_socket = ::lstat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode);
+  if (error == asio::error::connection_refused && is_socket) ::unlink(path.c_str());
   auto loop = std::make_shared<Unix::Loop>(parts_->context);
   loop->accepted = std::move(accepted);
   error = open_acceptor<Local>(loop->acceptor, Local::endpoint{path});

@@ -80,10 +80,12 @@ void SimulatedClock::set_busy(bool busy) {
 
 void SimulatedClock::take_bytes(std::string_view bytes) {
   partial_.append(bytes);
+  const auto alive = alive_;  // a line may end this clock
   for (auto end = partial_.find('\n'); stream_ && end != std::string::npos; end = partial_.find('\n')) {
     const auto line = partial_.substr(0, end);
     partial_.erase(0, end + 1);
     take_line(line);
+    if (!*alive) return;
   }
   if (partial_.size() > kLongestLine) lose("the simulator sent a line without end");
 }

@@ -23,6 +23,7 @@ constexpr const char* kStageName = ".glidehelm";
 constexpr const char* kMarkerName = ".glidersim";
 constexpr const char* kHoldName = "HOLD";
 constexpr const char* kEpochName = "epoch";
+constexpr const char* kAside = "foreign";
 
 std::string parent_of(std::string path) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
@@ -145,7 +146,9 @@ world::FileResult<std::unique_ptr<world::OpenFile>> Emitter::open_staged(const s
   return stage_->open(staged);
 }
 
-void Emitter::discard(const std::string& staged) { static_cast<void>(stage_->unlink(staged)); }
+void Emitter::discard(const std::string& staged) {
+  if (pinned_.count(staged) == 0) static_cast<void>(stage_->unlink(staged));
+}
 
 Emitter::Found Emitter::look(world::Folder& folder, const std::string& name) {
   const auto content = folder.read(name, kLargestForeign);
@@ -254,9 +257,13 @@ Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& stag
   }
   intent["margins"] = std::move(margins);
   world::failpoint("before_intent");
+  pinned_.insert(staged);
   const auto written =
       journal.append(RecordType::intent, text_of(intent), clock.utc(), clock.tick(), Journal::Durable::yes);
-  if (!written) return {Outcome::aborted, written.error().message, written.error().fatal};
+  if (!written) {
+    pinned_.erase(staged);
+    return {Outcome::aborted, written.error().message, written.error().fatal};
+  }
   world::failpoint("after_intent");
   if (auto why = objection(order))
     return abort(journal, *written, order, staged, {Outcome::aborted, *why, false}, clock);
@@ -287,13 +294,26 @@ Emission Emitter::make_visible(const safety::VerifiedFile& file, const std::stri
     if (swapped.error().code != ENOENT) return {Outcome::aborted, swapped.error().message(), false};
     return {Outcome::aborted, "our previous file was taken at this moment: the glider may be receiving it", false};
   }
-  if (look(*stage_, staged).is(ours_.at(name_))) return {Outcome::queued, "", false};
+  const auto out = look(*stage_, staged);
+  if (out.is(ours_.at(name_))) return {Outcome::queued, "", false};
+  if (out.what == Found::What::problem)  // nobody knows whose it is: it is kept, and the next start looks again
+    return {Outcome::unknown,
+            name_ + " is visible, what it replaced cannot be read (" + out.problem + "): it is " + stage_path_ + "/" +
+                keep_aside(staged),
+            false};
   return put_back(staged, name_, ours);
 }
 
 /// What came out of the exchange is somebody else's file: it goes back at once, and durably, before anything else is
 /// said. `ours` is what must come out then.
 Emission Emitter::put_back(const std::string& staged, const std::string& name, const Sha256& ours) {
+  const auto twice = [&] {
+    return Emission{Outcome::unknown,
+                    name + " was changed twice while ours was being made; the other file is " + stage_path_ + "/" +
+                        keep_aside(staged),
+                    false};
+  };
+  if (const auto there = look(*target_, name); there.what != Found::What::absent && !there.is(ours)) return twice();
   auto back = stage_->exchange(staged, *target_, name);
   const bool taken = !back && back.error().code == ENOENT;  // ours was taken meanwhile
   if (taken) back = stage_->rename_new(staged, *target_, name);
@@ -309,20 +329,21 @@ Emission Emitter::put_back(const std::string& staged, const std::string& name, c
                 " was changed while ours was being made; it was put back, but ours may have been "
                 "taken before",
             false};
-  if (const auto out = look(*stage_, staged); !out.is(ours) && out.what != Found::What::absent)
-    return {Outcome::unknown,
-            name + " was changed twice while ours was being made; the later file is " + stage_path_ + "/" +
-                keep_aside(staged),
-            false};
+  if (const auto out = look(*stage_, staged); !out.is(ours) && out.what != Found::What::absent) return twice();
   return {Outcome::foreign_file, name + " was changed while ours was being made; it was put back", false};
 }
 
-/// A file of somebody else that lies in our staging folder gets a name that is never cleaned away.
+/// A file of somebody else that lies in our staging folder gets a name that is never cleaned away and that recovery
+/// finds.
 std::string Emitter::keep_aside(const std::string& staged) {
-  const auto name = fmt::format("foreign-{}-{}.ma", epoch_, ++kept_);
-  if (!stage_->rename_new(staged, *stage_, name)) return staged;
+  const auto name = aside_of(staged);
+  if (name == staged || !stage_->rename_new(staged, *stage_, name)) return staged;
   static_cast<void>(stage_->sync());
   return name;
+}
+
+std::string Emitter::aside_of(const std::string& staged) {
+  return staged.rfind(kAside, 0) == 0 ? staged : std::string{kAside} + staged;
 }
 
 std::optional<world::FileError> Emitter::sync_both() {
@@ -351,17 +372,24 @@ Emission Emitter::make_durable(const EmissionOrder& order, const safety::Verifie
             written.error().fatal};
   world::failpoint("after_committed");
   // After an exchange the swapped-out copy lies under the staged name; its bytes are in the journal.
+  pinned_.erase(staged);
   discard(staged);
   return {Outcome::queued, fmt::format("{} is queued in {}", name_, target_path_), false};
 }
 
-/// A: nothing of ours is visible.
+/// A: nothing of ours is visible. The staged file goes only when its INTENT has a durable end: while it is there,
+/// recovery knows that it was never taken.
 Emission Emitter::abort(Journal& journal, std::uint64_t intent, const EmissionOrder& order, const std::string& staged,
                         Emission why, const world::Clock& clock) {
   const Json aborted{{"glider", order.glider}, {"surfacing", order.surfacing}, {"intent", intent}, {"why", why.detail}};
-  const auto written = journal.append(RecordType::aborted, text_of(aborted), clock.utc(), clock.tick());
-  if (!written) why.fatal = why.fatal || written.error().fatal;
-  discard(staged);
+  const auto written =
+      journal.append(RecordType::aborted, text_of(aborted), clock.utc(), clock.tick(), Journal::Durable::yes);
+  if (written) {
+    pinned_.erase(staged);
+    discard(staged);
+  } else {
+    why.fatal = why.fatal || written.error().fatal;
+  }
   return why;
 }
 

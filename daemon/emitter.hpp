@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -66,7 +67,7 @@ class Emitter {
   world::FileResult<std::string> stage(std::string_view bytes, std::uint64_t number);
   /// E3: a read-only descriptor of the staged inode, for the verifier.
   world::FileResult<std::unique_ptr<world::OpenFile>> open_staged(const std::string& staged);
-  /// Removes a staged file that will not go out.
+  /// Removes a staged file that will not go out. One whose INTENT has no end yet stays: recovery needs it.
   void discard(const std::string& staged);
 
   /// E4–E9. `staged` is the inode that was judged; its bytes must be the file's. The clock is read again after INTENT is
@@ -110,7 +111,8 @@ class Emitter {
   };
   struct Settled {
     Emission emission;
-    bool closed{true};  ///< false: nothing could be read; the INTENT stays open for the next start
+    bool closed{true};     ///< false: nothing could be read; the INTENT stays open for the next start
+    std::string remove{};  ///< a staged file of ours that is not needed once the INTENT is closed
   };
 
   explicit Emitter(world::Files& files) : files_{files} {}
@@ -121,14 +123,15 @@ class Emitter {
   Emission make_visible(const safety::VerifiedFile& file, const std::string& staged, bool exchange);
   Emission put_back(const std::string& staged, const std::string& name, const Sha256& ours);
   std::string keep_aside(const std::string& staged);
+  static std::string aside_of(const std::string& staged);
   Emission make_durable(const EmissionOrder& order, const safety::VerifiedFile& file, const std::string& staged,
                         Journal& journal, const world::Clock& clock, std::uint64_t intent);
   Emission abort(Journal& journal, std::uint64_t intent, const EmissionOrder& order, const std::string& staged,
                  Emission why, const world::Clock& clock);
   std::vector<Open> read_past(const std::string& glider, const std::vector<JournalRecord>& past);
-  Settled settle(const Open& intent);
-  Settled settle_visible(const Open& intent, const Found& staged);
-  Settled settle_gone(const Open& intent, const Found& target, const Found& staged);
+  Settled settle(Open intent);
+  Settled settle_visible(const Open& intent);
+  Settled settle_gone(const Open& intent, const Found& target, bool staged_is_foreign);
   std::optional<world::FileError> sync_both();
 
   world::Files& files_;
@@ -138,7 +141,8 @@ class Emitter {
   world::FileStat target_stat_, stage_stat_;
   std::string name_;                    ///< goto_lNN.ma
   std::map<std::string, Sha256> ours_;  ///< by name: the file that we last made visible
-  std::uint64_t epoch_{}, kept_{};
+  std::set<std::string> pinned_;        ///< staged files whose INTENT has no end
+  std::uint64_t epoch_{};
   bool transfer_open_{};
 };
 

@@ -63,7 +63,7 @@ std::vector<RecoveredEmission> Emitter::recover(const std::string& glider, const
   std::vector<RecoveredEmission> settled;
   std::vector<std::string> needed;  // staged files of INTENTs that stay open
   for (const auto& intent : read_past(glider, past)) {
-    auto [emission, closed] = settle(intent);
+    auto [emission, closed, remove] = settle(intent);
     if (closed) {
       const auto type = emission.outcome == Outcome::queued    ? RecordType::committed
                         : emission.outcome == Outcome::unknown ? RecordType::recovered
@@ -81,6 +81,7 @@ std::vector<RecoveredEmission> Emitter::recover(const std::string& glider, const
       }
     }
     if (!closed) needed.push_back(intent.staged);
+    if (closed && !remove.empty()) discard(remove);
     const bool ends = emission.fatal;
     settled.push_back({intent.surfacing, std::move(emission)});
     if (ends) return settled;
@@ -91,42 +92,54 @@ std::vector<RecoveredEmission> Emitter::recover(const std::string& glider, const
   return settled;
 }
 
-Emitter::Settled Emitter::settle(const Open& intent) {
+Emitter::Settled Emitter::settle(Open intent) {
   const auto target = look(*target_, intent.name);
-  const auto staged = look(*stage_, intent.staged);
-  for (const auto* found : {&target, &staged})
-    if (found->what == Found::What::problem) return {{Outcome::unknown, found->problem, false}, false};
-  if (target.is(intent.wanted)) return settle_visible(intent, staged);
-  // Still staged: it never was visible, or a file that it met was put back.
-  if (staged.is(intent.wanted)) return {{Outcome::aborted, "the crash came before the file was visible", false}};
-  return settle_gone(intent, target, staged);
+  auto staged = look(*stage_, intent.staged);
+  if (staged.what == Found::What::absent) {  // kept aside when the way back failed
+    const auto aside = aside_of(intent.staged);
+    if (const auto kept = look(*stage_, aside); kept.what != Found::What::absent) {
+      staged = kept;
+      intent.staged = aside;
+    }
+  }
+  for (const Found* found : {&target, static_cast<const Found*>(&staged)})
+    if (found->what == Found::What::problem) return {{Outcome::unknown, found->problem, false}, false, ""};
+  const auto is_ours = [&](const Found& found) {
+    return found.is(intent.wanted) || (intent.replaced && found.is(*intent.replaced));
+  };
+  const bool staged_is_foreign = staged.what != Found::What::absent && !is_ours(staged);
+  // An exchange had met somebody else's file, and the crash or an error came before it was back.
+  if (is_ours(target) && staged_is_foreign) {
+    const auto back = put_back(intent.staged, intent.name, target.hash);
+    return {back, back.outcome != Outcome::unknown, intent.staged};
+  }
+  Settled settled =
+      target.is(intent.wanted)   ? settle_visible(intent)
+      : staged.is(intent.wanted) ? Settled{{Outcome::aborted, "the crash came before the file was visible", false}}
+      : is_ours(target)          ? Settled{{Outcome::aborted,
+                                            "the crash came before the file was visible; the one before it lies there", false}}
+                                 : settle_gone(intent, target, staged_is_foreign);
+  if (!staged_is_foreign) settled.remove = intent.staged;
+  return settled;
 }
 
-/// Our file lies in to-glider. After an exchange the one that it replaced lies under the staged name; should that be
-/// somebody else's, the crash came before it could be put back.
-Emitter::Settled Emitter::settle_visible(const Open& intent, const Found& staged) {
-  if (staged.what == Found::What::file && !staged.is(intent.wanted) &&
-      !(intent.replaced && staged.is(*intent.replaced))) {
-    const auto back = put_back(intent.staged, intent.name, intent.wanted);
-    return {back, back.outcome != Outcome::unknown};
-  }
-  if (const auto problem = sync_both()) return {{Outcome::unknown, problem->message(), problem->failed_sync()}, false};
+/// Our file lies in to-glider, and after an exchange the one that it replaced under the staged name.
+Emitter::Settled Emitter::settle_visible(const Open& intent) {
+  if (const auto problem = sync_both())
+    return {{Outcome::unknown, problem->message(), problem->failed_sync()}, false, ""};
   ours_[intent.name] = intent.wanted;
   return {{Outcome::queued, fmt::format("{} was visible before the crash and is queued", intent.name), false}};
 }
 
-/// Our file is in neither folder.
-Emitter::Settled Emitter::settle_gone(const Open& intent, const Found& target, const Found& staged) {
-  if (intent.replaced && target.is(*intent.replaced))
-    return {{Outcome::aborted, "the crash came before the file was visible; the one before it lies there", false}};
+/// Our file is in neither folder, and neither is the one that it was to replace.
+Emitter::Settled Emitter::settle_gone(const Open& intent, const Found& target, bool staged_is_foreign) {
   std::string more;
-  if (staged.what == Found::What::file && !(intent.replaced && staged.is(*intent.replaced))) {
-    // The exchange had met somebody else's file, and then ours was taken: theirs goes back.
+  if (staged_is_foreign) {  // ours was taken before theirs could be put back
     const auto back = target.what == Found::What::absent
                           ? stage_->rename_new(intent.staged, *target_, intent.name)
                           : world::FileResult<Done>{unexpected(world::FileError{"rename", intent.name, EEXIST})};
     if (const auto problem = sync_both())
-      return {{Outcome::unknown, problem->message(), problem->failed_sync()}, false};
+      return {{Outcome::unknown, problem->message(), problem->failed_sync()}, false, ""};
     more = back ? "; a human's file that it had met was put back"
                 : "; a human's file that it had met is " + stage_path_ + "/" + keep_aside(intent.staged);
   }

@@ -66,8 +66,7 @@ CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const
   for (int i = 0; i < CtsAStar::kMostHalvings && finished; ++i) {
     if (purse.spent().expansions >= CtsAStar::kCheapExpansions) break;
     cell = 0.5 * cell;
-    auto finer =
-        search(problem, ocean, chart, purse.rest(), {allowance, cell, arrives(best) ? best.arrival_s : 1e18});
+    auto finer = search(problem, ocean, chart, purse.rest(), {allowance, cell, arrives(best) ? best.arrival_s : 1e18});
     purse.take(finer);
     finished = finer.exhausted;
     if (arrives(finer) || (!arrives(best) && finer.nearest_m < best.nearest_m)) best = std::move(finer);

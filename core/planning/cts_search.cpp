@@ -170,17 +170,30 @@ class Search {
     return r;
   }
 
-  /// A lower bound of the geodesic distance to the goal's centre. Half the chord is x = sin(angle/2); the series of the arc
-  /// sine has positive terms, so cutting it short stays below.
+  /// A lower bound of the geodesic distance to the goal's centre: half the chord is x = sin(angle/2), and all series are
+  /// cut where they are below what they stand for.
   [[nodiscard]] double least_distance(double lat, double lon) const {
-    const double s = std::sin(0.5 * (goal_lat_ - lat)), t = std::sin(0.5 * (goal_lon_ - lon));
-    const double x2 = s * s + std::cos(lat) * goal_cos_ * t * t, x = std::sqrt(x2);
+    const double s = sine_at_most(0.5 * std::abs(goal_lat_ - lat));
+    const double t = sine_at_most(
+        0.5 * std::abs(std::abs(goal_lon_ - lon) <= kPi ? goal_lon_ - lon : std::remainder(goal_lon_ - lon, 2 * kPi)));
+    const double x2 = s * s + cosine_at_most(lat) * goal_cos_ * t * t, x = std::sqrt(std::max(0.0, x2));
     return 2 * kSmallestRadius * x * (1 + x2 * (1.0 / 6 + x2 * (3.0 / 40 + x2 * (15.0 / 336))));
   }
-  [[nodiscard]] double bearing(double lat, double lon) const {
+  /// 0 ≤ x ≤ π/2; to 2e-4 there, to 1e-9 for x < 0.3.
+  static double sine_at_most(double x) {
+    const double x2 = x * x;
+    return x * (1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040))));
+  }
+  /// |x| ≤ π/2, to 5e-7.
+  static double cosine_at_most(double x) {
+    const double x2 = x * x;
+    return 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800)))));
+  }
+  /// Direction to the goal on the sphere, not normalised.
+  [[nodiscard]] Offset towards_goal(double lat, double lon) const {
     const double dlon = goal_lon_ - lon;
-    return std::atan2(std::sin(dlon) * goal_cos_,
-                      std::cos(lat) * std::sin(goal_lat_) - std::sin(lat) * goal_cos_ * std::cos(dlon));
+    return {std::sin(dlon) * goal_cos_,
+            std::cos(lat) * std::sin(goal_lat_) - std::sin(lat) * goal_cos_ * std::cos(dlon)};
   }
 
   [[nodiscard]] double margin_in_force(double lat, double lon) const {
@@ -207,7 +220,9 @@ class Search {
     drift(label.stints, index, 0);
     if (lanes_.lost[0] != 0) return;
     const double lat = lanes_.lat[0], lon = lanes_.lon[0], margin = margins_[0], room = rooms_[0];
-    const double b = bearing(label.lat, label.lon), sin_b = std::sin(b), cos_b = std::cos(b);
+    const auto to_goal = towards_goal(label.lat, label.lon);
+    const double per = to_goal.length() > 0 ? 1 / to_goal.length() : 0.0;
+    const double sin_b = per * to_goal.east, cos_b = per > 0 ? per * to_goal.north : 1.0;
     for (int i = 0; i < count_; ++i) {  // line 3: uniform headings, the goal's direction first
       const auto k = static_cast<std::size_t>(i);
       set_lane(k, lat, lon, sin_b * turns_[k].cos + cos_b * turns_[k].sin,
@@ -244,14 +259,15 @@ class Search {
   void drift(int stint, std::int32_t index, int repeats) {
     const double seconds = problem_.schedule.drift_before(stint).count(), t0 = dives(stint) - seconds;
     if (seconds <= 0) return;
-    const auto east = lanes_.water_east, north = lanes_.water_north;
+    std::copy_n(lanes_.water_east.begin(), lanes_.count, east_kept_.begin());
+    std::copy_n(lanes_.water_north.begin(), lanes_.count, north_kept_.begin());
     std::fill_n(lanes_.water_east.begin(), lanes_.count, 0.0);
     std::fill_n(lanes_.water_north.begin(), lanes_.count, 0.0);
     remember_places();
     ocean_.surface.advance(lanes_, problem_.start.fix_s + t0, seconds);
     statistics_.current_evaluations += 4 * static_cast<std::uint64_t>(lanes_.count);
-    lanes_.water_east = east;
-    lanes_.water_north = north;
+    std::copy_n(east_kept_.begin(), lanes_.count, lanes_.water_east.begin());
+    std::copy_n(north_kept_.begin(), lanes_.count, lanes_.water_north.begin());
     check_land(envelope_.drift * seconds);
     if (near_goal(repeats + 1)) check_goal(index, repeats, t0, seconds);
     note_lost();
@@ -262,15 +278,16 @@ class Search {
     const double seconds = problem_.schedule.stint_length(stint).count(), t0 = dives(stint);
     const int steps = std::max(1, static_cast<int>(std::ceil(seconds / step_ - 1e-9)));
     const double dt = seconds / steps;
-    const bool goal_near = near_goal(repeat);
+    const bool goal_near = near_goal(repeat), land_near = !spend_room(envelope_.dive * seconds);
     for (int step = 0; step < steps; ++step) {
-      remember_places();
+      if (land_near || goal_near) remember_places();
       ocean_.dive.advance(lanes_, problem_.start.fix_s + t0 + step * dt, dt);
-      statistics_.current_evaluations += 4 * static_cast<std::uint64_t>(lanes_.count);
-      check_land(envelope_.dive * dt);
+      if (land_near) check_land(envelope_.dive * dt);
       if (goal_near) check_goal(index, repeat, t0 + step * dt, dt);
     }
-    statistics_.cost_evaluations += static_cast<std::uint64_t>(lanes_.count);
+    const auto flown = static_cast<std::uint64_t>(lanes_.count);
+    statistics_.current_evaluations += 4 * flown * static_cast<std::uint64_t>(steps);
+    statistics_.cost_evaluations += flown;
     note_lost();
   }
 
@@ -286,6 +303,14 @@ class Search {
     return parent_distance_ <= goal_.radius.si() + repeats * (envelope_.dive * stint + envelope_.drift * wait);
   }
 
+  /// True when every lane has room for `reach` metres; it is spent at once.
+  bool spend_room(double reach) {
+    const auto n = static_cast<std::size_t>(lanes_.count);
+    for (std::size_t k = 0; k < n; ++k)
+      if (rooms_[k] - reach < margins_[k]) return false;
+    for (std::size_t k = 0; k < n; ++k) rooms_[k] -= reach;
+    return true;
+  }
   /// After a step on which no lane came farther than `reach`. A lane spends its room first.
   void check_land(double reach) {
     for (int i = 0; i < lanes_.count; ++i) {
@@ -412,7 +437,8 @@ class Search {
 
   [[nodiscard]] Heading heading_of(std::int32_t parent, std::uint16_t heading) const {
     const Label& from = labels_[static_cast<std::size_t>(parent)];
-    return Heading{Radians{bearing(from.lat, from.lon) + 2 * kPi * heading / count_}};
+    const auto to_goal = towards_goal(from.lat, from.lon);
+    return Heading::of(to_goal.east, to_goal.north) + Radians{2 * kPi * heading / count_};
   }
   [[nodiscard]] std::vector<Heading> path_to(std::int32_t index) const {
     std::vector<Heading> headings;
@@ -450,6 +476,7 @@ class Search {
   std::array<Turn, Lanes::kMax> turns_{};
   Lanes lanes_{};
   PerLane lat_before_{}, lon_before_{};
+  PerLane east_kept_{}, north_kept_{};
   PerLane margins_{};  ///< clearance that a lane keeps
   PerLane rooms_{};    ///< lower bound of the clearance that it has
   std::array<std::uint16_t, Lanes::kMax> which_{};

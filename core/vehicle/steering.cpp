@@ -9,8 +9,10 @@ namespace glidehelm::vehicle {
 
 namespace {
 
-constexpr double kShortestLeg = 500.0;     // metres
-constexpr double kSmallestRadius = 100.0;  // metres
+constexpr double kShortestLeg = 500.0;      // metres
+constexpr double kHeldOn = 60.0;            // seconds that an arriving heading is held beyond the arrival
+constexpr double kSmallestGoalRing = 10.0;  // metres
+constexpr double kSmallestRadius = 100.0;   // metres
 constexpr double kSightPiece = 20'000.0;  // metres: the sagitta of a geodesic over it is below 10 m to 60°, 50 m to 80°
 
 Current believed_in(const Flight& flight, const Current& met_before, int k) {
@@ -100,12 +102,13 @@ struct Steered {
 DiveFlown fly_points(const Flight& flight, const Waters& waters, const State& from, double seconds, Steered& steered,
                      Current believed) {
   std::size_t target = 0;
-  return dive_by_law(flight, waters, from, seconds, steered.points, target, steered.radius, false, believed);
+  return dive_by_law(flight, waters, from, seconds, steered.points, target, steered.radius, true, believed);
 }
 
 Metres goal_ring(const Flight& flight, GeoPoint from) {
   const double way = distance(from, flight.goal.centre).si();
-  return Metres{std::ceil(std::clamp(0.1 * way, 10.0, std::max(10.0, 0.5 * flight.goal.radius.si())))};
+  const double largest = std::max(kSmallestGoalRing, 0.5 * flight.goal.radius.si());
+  return Metres{std::ceil(std::clamp(0.1 * way, kSmallestGoalRing, largest))};
 }
 
 /// Straight at the goal.
@@ -121,10 +124,13 @@ Steered steer_to_goal(const Flight& flight, const Waters& waters, const State& f
 /// On a heading that arrives when held: it is held until then, the goal comes next.
 Steered hold_until_goal(const Flight& flight, const Waters& waters, const State& from, double seconds, Heading wanted,
                         double arrival_s, Current believed) {
-  const double held = std::max(1.0, arrival_s - from.t_s);
+  // The ring of the aim is crossed early_share before its time, and shall not be before the arrival.
+  const double share = 1 - early_share(flight.glider.current_correction);
+  const double held = std::min(seconds, (arrival_s - from.t_s + kHeldOn) / share);
   const double leg = aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}).length;
   Steered s;
-  s.radius = list_radius({leg}, 0, {});
+  // The goal is a point of this list: its ring must lie well inside the disc, or the glider turns before it is there.
+  s.radius = std::min(list_radius({leg}, 0, {}), Metres{std::max(kSmallestGoalRing, 0.5 * flight.goal.radius.si())});
   const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius);
   s.points = {aim.at};
   if (!aim.ends_list) s.points.push_back(flight.goal.centre);
@@ -178,17 +184,17 @@ Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Curren
 
 namespace {
 
-/// The list when the first stint arrives.
-model::WaypointList arriving_list(const Stint& stint, const Flight& flight, const Waters& waters,
-                                  const ListOptions& options) {
+/// The list when the first stint arrives by `steer_home`; none when it arrives on the way to its ordinary aim.
+std::optional<model::WaypointList> arriving_list(const Stint& stint, const Flight& flight, const Waters& waters,
+                                                 const ListOptions& options) {
   model::WaypointList list;
   list.at_end = options.at_end;
   const auto from = state_at(stint.dive, stint.dive_s, waters);
   const double seconds = stint.surface_s - stint.dive_s;
   const auto believed = believed_in(flight, {}, 0);
   const auto ideal = hold(flight, waters, from, seconds, stint.heading);
-  auto steered = steer_home(flight, waters, from, seconds, stint.heading, ideal, believed);
-  if (!steered) steered = steer_to_goal(flight, waters, from, seconds, believed);
+  const auto steered = steer_home(flight, waters, from, seconds, stint.heading, ideal, believed);
+  if (!steered) return std::nullopt;
   list.radius = options.radius.value_or(steered->radius);
   for (const auto& p : steered->points) list.points.push_back({p, model::WaypointRole::aim});
   if (list.points.back().at == flight.goal.centre) list.points.back().role = model::WaypointRole::goal;
@@ -203,7 +209,8 @@ model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight
                              const ListOptions& options) {
   const auto goal = model::Waypoint{flight.goal.centre, model::WaypointRole::goal};
   if (stints.empty()) return {{goal}, options.radius.value_or(goal_ring(flight, flight.fix)), options.at_end};
-  if (stints.front().arrives) return arriving_list(stints.front(), flight, waters, options);
+  if (stints.front().arrives)
+    if (auto list = arriving_list(stints.front(), flight, waters, options)) return std::move(*list);
 
   const auto most = static_cast<std::size_t>(std::max(1, options.max_waypoints));
   const bool corrects = flight.glider.current_correction == 1;
@@ -214,7 +221,7 @@ model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight
   };
   double largest_drift = 0;
   std::vector<double> legs;
-  for (std::size_t k = 0; k < stints.size() && !stints[k].arrives && k + 1 < most; ++k) {
+  for (std::size_t k = 0; k < stints.size() && (k == 0 || !stints[k].arrives) && k + 1 < most; ++k) {
     if (k > 0 && !corrects) break;
     legs.push_back(aim_of(k, Metres{0}).length);
     if (k + 1 < stints.size())

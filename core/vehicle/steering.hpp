@@ -70,7 +70,7 @@ struct ListOptions {
 ///    point that is not hit in time would turn the next dive back. Never more than `max_waypoints`.
 ///  - It ends with the first aim that ends it (`Aim::ends_list`).
 ///  - When the first stint arrives: the goal alone if steering at it is how the stint was predicted, else the heading
-///    that arrives, held until it does, and then the goal.
+///    that arrives, held until it does, and then the goal, with a radius of at most half the goal's.
 ///  - Without stints: the goal alone.
 ///
 /// One radius for all points, in whole metres: 10 % of the median leg, at least 100 m and twice the largest predicted

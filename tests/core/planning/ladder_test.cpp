@@ -1,0 +1,69 @@
+#include "core/planning/ladder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "core/planning/registry.hpp"
+#include "tests/support/planning.hpp"
+
+using namespace glidehelm;
+
+namespace {
+
+Expected<planning::Plan, planning::PlanFailure> answer(const char* method, const test::Sea& sea,
+                                                       const planning::Budget& budget = {}) {
+  const std::array<ocean::Ocean, 1> members{ocean::Ocean{sea.field, sea.field}};
+  return planning::planner_named(method)->plan(sea.problem, members, chart::Chart{}, budget, {});
+}
+
+}  // namespace
+
+TEST_CASE("best is never worse than any single method and wears the name of the stage that made it") {
+  for (auto sea : test::analytic_seas()) {
+    sea.problem.headings = 9;
+    const auto best = answer("best", sea);
+    INFO(sea.name);
+    REQUIRE(best);
+    bool labelled = false;
+    for (const char* method : {"direct", "cts-astar"}) {
+      const auto single = answer(method, sea);
+      REQUIRE(single);
+      CHECK_FALSE(planning::better_than(*single, *best));
+      labelled = labelled || (best->method == method && best->stints == single->stints);
+    }
+    CHECK(labelled);
+  }
+}
+
+TEST_CASE("the stages are told as they come, each better than the one before, the last one again at the end") {
+  const auto sea = test::analytic_seas().at(3);
+  const std::array<ocean::Ocean, 1> members{ocean::Ocean{sea.field, sea.field}};
+  std::vector<planning::Plan> told;
+  const auto best = planning::Ladder{}.plan(sea.problem, members, chart::Chart{}, {},
+                                            [&](const planning::Plan& p) { told.push_back(p); });
+  REQUIRE(best);
+  REQUIRE(told.size() >= 2);
+  for (std::size_t i = 1; i + 1 < told.size(); ++i) CHECK(planning::better_than(told[i], told[i - 1]));
+  CHECK(told.front().method == "direct");
+  CHECK(told.back() == *best);
+}
+
+TEST_CASE("without work for a search the straight way is the answer") {
+  planning::Budget nothing;
+  nothing.work = 0;
+  const auto best = answer("best", test::analytic_seas().at(0), nothing);
+  REQUIRE(best);
+  CHECK(best->method == "direct");
+  CHECK(best->statistics.expansions == 0);
+}
+
+TEST_CASE("a clock that has run out leaves the straight way and says at which count the search was cut") {
+  planning::Budget late;
+  late.expired = [] { return true; };
+  auto sea = test::analytic_seas().at(6);
+  sea.problem.goal =
+      planning::PointGoal{destination(sea.problem.start.fix, Bearing{degrees(60)}, Metres{52e3}), Metres{500}};
+  const auto best = answer("best", sea, late);
+  REQUIRE(best);
+  CHECK(best->cut_at > 0);
+  CHECK(best->statistics.expansions == best->cut_at);
+}

@@ -1,0 +1,15 @@
+#include "core/planning/registry.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace glidehelm;
+
+TEST_CASE("every name of the list makes a planner that answers to it, and no other name does") {
+  CHECK(planning::method_names() == std::vector<std::string>{"direct", "cts-astar", "best"});
+  for (const auto& name : planning::method_names()) {
+    const auto planner = planning::planner_named(name);
+    REQUIRE(planner);
+    CHECK(planner->name() == name);
+  }
+  for (const char* name : {"", "astar", "Direct", "best "}) CHECK_FALSE(planning::planner_named(name));
+}

@@ -1,0 +1,108 @@
+#include "core/vehicle/dive_by_law.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/support/planning.hpp"
+
+using namespace glidehelm;
+
+namespace {
+
+constexpr double kStint = 4 * 3600.0;
+
+struct Setting {
+  test::Uniform field;
+  chart::Chart chart;
+  vehicle::Waters waters{{field, field}, chart, Metres{0}};
+  vehicle::Flight flight;
+  explicit Setting(double east = 0, double north = 0) : field{east, north} {
+    flight.fix = geo_point(28, -16);
+    flight.fix_s = test::kT0;
+    flight.goal = {geo_point(40, -16), Metres{1000}};
+    flight.horizon_s = test::kT0 + 1e7;
+  }
+  [[nodiscard]] vehicle::State start() const { return vehicle::state_at(flight.fix, test::kT0, waters); }
+};
+
+Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
+
+GeoPoint off(GeoPoint from, double east, double north) {
+  return destination(from, Bearing::of(east, north), Metres{std::hypot(east, north)});
+}
+
+}  // namespace
+
+TEST_CASE("the heading leans into the believed current by the arc sine of its share across") {
+  const MetresPerSecond u{0.25};
+  // slocum.md 4.4: 0.15 m/s across at 0.25 m/s are 36.9 degrees.
+  CHECK(vehicle::steered_heading(0, current(0.15, 0), u) == Approx(-36.87 * kPi / 180).margin(1e-4));
+  CHECK(vehicle::steered_heading(kPi / 2, current(0, -0.15), u) == Approx(kPi / 2 - 36.87 * kPi / 180).margin(1e-4));
+  CHECK(vehicle::steered_heading(1.0, current(0, 0), u) == 1.0);
+  CHECK(vehicle::steered_heading(0, current(0.4, 0), u) == Approx(-kPi / 2));  // no more than square to the bearing
+}
+
+TEST_CASE("a believed current that is true is compensated: the track leads straight to the waypoint") {
+  const Setting s{0.1, 0.05};
+  const auto to = off(s.flight.fix, 3000, 9000);
+  const std::vector<GeoPoint> points{to};
+  std::size_t target = 0;
+  const auto flown =
+      dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{100}, false, current(0.1, 0.05));
+  const auto to_point = geodesic(s.flight.fix, to), gone = geodesic(s.flight.fix, flown.motion.end.at());
+  // Dead reckoning is right, so only rounding and the midpoint rule are left: 1e-4 rad of bearing (dive_by_law.hpp).
+  CHECK(std::abs((to_point.departing - gone.departing).si()) < 2e-4);
+  CHECK(flown.motion.mean.east.si() == Approx(0.1).margin(1e-6));
+}
+
+TEST_CASE("an ignored current carries the glider off by its whole way") {
+  const Setting s{0.2, 0};
+  const std::vector<GeoPoint> points{off(s.flight.fix, 0, 20e3)};
+  std::size_t target = 0;
+  const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{100}, false, {});
+  const auto there = off(s.flight.fix, 0.2 * kStint, 0.3 * kStint);
+  // Metric of 28° at the start against the way's: 4320 m · tan 28°/R = 3.6e-4 of 2880 m, 1 m.
+  CHECK(distance(flown.motion.end.at(), there).si() < 2);
+  CHECK(flown.first_heading.degrees() == Approx(0).margin(0.01));
+}
+
+TEST_CASE("a ring is crossed on the dead-reckoned way, and the next waypoint follows under water") {
+  const Setting s;
+  const auto first = off(s.flight.fix, 0, 2300);
+  const std::vector<GeoPoint> points{first, off(first, 20e3, 0)};
+  std::size_t target = 0;
+  const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{300}, false, {});
+  CHECK(target == 1);
+  // 2000 m north to the ring, the remaining 2320 m towards the second point, seen from 300 m south of the first.
+  const double east = 20e3, north = 300, length = std::hypot(east, north), rest = 0.3 * kStint - 2000;
+  CHECK(distance(flown.motion.end.at(), off(s.flight.fix, rest * east / length, 2000 + rest * north / length)).si() <
+        2);
+}
+
+TEST_CASE("after the last waypoint the list begins again when it loops; a single one stays the target") {
+  const Setting s;
+  const std::vector<GeoPoint> points{off(s.flight.fix, 0, 1500), off(s.flight.fix, 0, -1500)};
+  std::size_t target = 0;
+  dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{200}, true, {});
+  // 1300 m to the first ring, 2600 m to the second, 420 m on the way back to the first.
+  CHECK(target == 0);
+  target = 0;
+  dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{200}, false, {});
+  CHECK(target == 1);
+  const std::vector<GeoPoint> one{points[0]};
+  target = 0;
+  const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, one, target, Metres{200}, true, {});
+  CHECK(target == 0);
+  CHECK(distance(flown.motion.end.at(), points[0]).si() < 40);  // circles within a step (36 m) of it
+}
+
+TEST_CASE("a current stronger than the glider against its heading is held towards a waypoint up-current") {
+  // Wanted heading north, current 0.5 m/s south: the waypoint lies north, the glider points at it and moves away from it.
+  const Setting s{0, -0.5};
+  const std::vector<GeoPoint> points{off(s.flight.fix, 0, 3000), off(s.flight.fix, 9000, 0)};
+  std::size_t target = 0;
+  const auto flown =
+      dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{200}, false, current(0, -0.5));
+  CHECK(target == 0);
+  CHECK(flown.first_heading.degrees() == Approx(0).margin(0.01));
+  CHECK(distance(flown.motion.end.at(), off(s.flight.fix, 0, -0.2 * kStint)).si() < 1);
+}

@@ -267,8 +267,7 @@ bool Chart::segment_is_clear(double lat0, double lon0, double clearance0, double
                              double margin) const {
   const Segment way{lat0, lon0, lat1 - lat0, folded(lon1 - lon0)};
   const double room0 = clearance0 - margin, room1 = clearance1 - margin;
-  if (room0 >= 0 && room1 >= 0 && margin >= 0 &&
-      room0 + room1 >= ClearanceRaster::length_at_most(lat0, way.dlat, way.dlon))
+  if (room0 >= 0 && room1 >= 0 && room0 + room1 >= ClearanceRaster::length_at_most(lat0, way.dlat, way.dlon))
     return true;
   if (!(margin <= kHorizon) || !std::isfinite(lat0 + lon0 + lat1 + lon1)) return false;
   if (!parts_) return true;

@@ -62,7 +62,7 @@ class Chart {
   [[nodiscard]] bool is_land(GeoPoint p) const;
   /// False where the coast file does not reach; its border belongs to it. True everywhere without a coast.
   [[nodiscard]] bool is_charted(GeoPoint p) const;
-  /// Clearance as described above. About 1 µs far from land, tens of µs beside a detailed shore.
+  /// Clearance as described above. Some µs, far from land as well as beside a detailed shore.
   [[nodiscard]] double clearance(double lat, double lon) const;
   [[nodiscard]] Metres clearance(GeoPoint p) const { return Metres{clearance(p.lat.radians(), p.lon.radians())}; }
   /// Distance to the nearest shoreline alone (areas and file border left out); negative on land; ±kHorizon beyond it.
@@ -72,7 +72,7 @@ class Chart {
   /// clearance. Exact up to the distance error above (with several keep-in areas, or a negative margin, up to 1 m); with
   /// margin 0 a segment may touch a border but not cross it. False when `margin` exceeds kHorizon or anything is not
   /// finite. The fast answers come from a raster of lower bounds (tens of ns); only near a limit is geometry asked
-  /// (about 1 µs per 2 km). Meant for segments up to 60 km; longer ones are answered as exactly.
+  /// (some µs). Meant for segments up to 60 km; longer ones are answered as exactly.
   [[nodiscard]] bool segment_is_clear(double lat0, double lon0, double lat1, double lon1, double margin) const;
   /// The same, when the caller already knows the clearance of both ends or a lower bound of it (a planner keeps it):
   /// accepts at once when the two discs of clearance cover the segment, else asks as above. Never rejects because of

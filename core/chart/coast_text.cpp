@@ -14,7 +14,6 @@ namespace {
 constexpr std::string_view kFirstLine = "# glidehelm coast v1\n";
 /// "0.0000000 0.0000000\n": no point takes fewer bytes, so a count of points can be checked before memory is taken.
 constexpr std::size_t kShortestPoint = 20;
-constexpr std::int64_t kUnits = 10'000'000;
 
 void append_degrees(std::string& text, std::int64_t units) {
   char digits[24];

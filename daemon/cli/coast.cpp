@@ -195,14 +195,28 @@ FileName split(const std::string& path) {
   return {slash == 0 ? "/" : path.substr(0, slash), path.substr(slash + 1)};
 }
 
-/// Writes beside the target and renames: a reader sees the old file or the new one.
-Expected<Done, std::string> write(const std::string& path, const std::string& bytes, world::World& world) {
-  const auto [folder_path, name] = split(path);
-  auto folder = world.files.open_folder(folder_path);
+/// A file beside the target, under a name that nobody else has.
+std::string staged_name(const std::string& name, world::Rng& rng) {
+  return "." + name + "." + std::to_string(rng.next());
+}
+
+/// Tries the folder of the target with an empty file: what would fail after minutes of cutting is said before.
+Expected<Done, std::string> try_folder(const FileName& target, world::World& world) {
+  auto folder = world.files.open_folder(target.folder);
   if (!folder) return unexpected(folder.error().message());
-  const std::string staged = "." + name + "." + std::to_string(world.rng.next());
+  const auto probe = staged_name(target.name, world.rng);
+  if (auto made = (*folder)->create(probe, "", 0644); !made) return unexpected(made.error().message());
+  if (auto gone = (*folder)->unlink(probe); !gone) return unexpected(gone.error().message());
+  return Done{};
+}
+
+/// Writes beside the target and renames: a reader sees the old file or the new one.
+Expected<Done, std::string> write(const FileName& target, const std::string& bytes, world::World& world) {
+  auto folder = world.files.open_folder(target.folder);
+  if (!folder) return unexpected(folder.error().message());
+  const auto staged = staged_name(target.name, world.rng);
   if (auto made = (*folder)->create(staged, bytes, 0644); !made) return unexpected(made.error().message());
-  auto renamed = (*folder)->rename_over(staged, **folder, name);
+  auto renamed = (*folder)->rename_over(staged, **folder, target.name);
   if (!renamed) {
     auto removed = (*folder)->unlink(staged);
     return unexpected(renamed.error().message() + (removed ? "" : "; " + staged + " is left there"));
@@ -266,9 +280,8 @@ int run_coast(const CoastOptions& options, world::World& world, std::ostream& ou
     err << "glidehelm coast: -o names no file: '" << options.output << "'\n";
     return 2;
   }
-  // An unwritable folder is said before minutes of cutting, not after.
-  if (auto folder = world.files.open_folder(target.folder); !folder) {
-    err << "glidehelm coast: cannot write " << options.output << ": " << folder.error().message() << "\n";
+  if (auto tried = try_folder(target, world); !tried) {
+    err << "glidehelm coast: cannot write " << options.output << ": " << tried.error() << "\n";
     return 1;
   }
   const auto coast = cut_coast(*area, world, err);
@@ -277,7 +290,7 @@ int run_coast(const CoastOptions& options, world::World& world, std::ostream& ou
     return 1;
   }
   const auto text = (*coast)->text();
-  if (auto written = write(options.output, text, world); !written) {
+  if (auto written = write(target, text, world); !written) {
     err << "glidehelm coast: cannot write " << options.output << ": " << written.error() << "\n";
     return 1;
   }

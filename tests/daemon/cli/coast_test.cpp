@@ -264,6 +264,14 @@ TEST_CASE("an output that cannot be written is said with its reason") {
         std::string::npos);
   CHECK(run("-16/-14/27/29", folder.path() + "/", &gmt).code == 2);
   CHECK(run("-16/-14/27/29", "", &gmt).code == 2);
+  // a folder that takes no file is found out before gmt is asked
+  int asked = 0;
+  OtherProcs counted{[&](const world::ProcessRequest& request) {
+    ++asked;
+    return island(request);
+  }};
+  CHECK(run("-16/-14/27/29", "/proc/a.coast", &counted).code == 1);
+  CHECK(asked == 0);
   // a folder of that name is in the way: the staged file goes again
   std::filesystem::create_directory(folder / "a.coast");
   const auto done = run("-16/-14/27/29", folder / "a.coast", &gmt);

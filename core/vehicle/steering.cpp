@@ -72,17 +72,24 @@ bool in_sight(GeoPoint a, GeoPoint b, const Waters& waters) {
   return true;
 }
 
+/// The longest leg that is written, metres: product.md 7.1 allows 1.1·(Û + largest believed current)·t_s, and what is
+/// written is rounded.
+double longest_leg(const Flight& flight, double fastest_current, double seconds) {
+  return 1.09 * (flight.glider.believed_speed.si() + fastest_current) * seconds;
+}
+
 /// Points of a plan's way that the straight way from `from` to the goal needs around land and areas: from each point the
-/// farthest of `later` surfacings that is in sight, until the goal is. At most `at_most` points.
+/// farthest of `later` surfacings that is in sight and within `longest` metres, until the goal is. At most `at_most`
+/// points.
 std::vector<GeoPoint> way_points(GeoPoint from, std::span<const Stint> later, GeoPoint goal, const Waters& waters,
-                                 std::size_t at_most) {
+                                 std::size_t at_most, double longest) {
   std::vector<GeoPoint> points;
   GeoPoint here = from;
   std::size_t next = 0;
   while (points.size() < at_most && !in_sight(here, goal, waters)) {
     std::size_t farthest = later.size();
     for (std::size_t i = next; i < later.size(); ++i)
-      if (in_sight(here, later[i].surface, waters)) farthest = i;
+      if (distance(here, later[i].surface).si() <= longest && in_sight(here, later[i].surface, waters)) farthest = i;
     if (farthest == later.size()) break;
     here = later[farthest].surface;
     points.push_back(here);
@@ -230,14 +237,29 @@ model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight
   model::WaypointList list;
   list.at_end = options.at_end;
   list.radius = list_radius(legs, largest_drift, options);
+  double fastest = 0;
   for (std::size_t k = 0; k < legs.size(); ++k) {
+    fastest = std::max({fastest, stints[k].dac.speed().si(),
+                        believed_in(flight, k == 0 ? Current{} : stints[k - 1].dac, static_cast<int>(k)).speed().si()});
+    const double longest = longest_leg(flight, fastest, stints[k].surface_s - stints[k].dive_s);
+    if (k == 0 && !options.radius) {
+      const double too_long = distance(flight.fix, aim_of(0, list.radius).at).si() - longest;
+      if (too_long > 0) list.radius = Metres{std::max(kSmallestRadius, std::floor(list.radius.si() - too_long))};
+    }
     const auto aim = aim_of(k, list.radius);
+    if (k > 0) {
+      // Where the believed current turns from one stint to the next, aim points of two stints lie farther apart than a
+      // stint can fly, or on top of each other. The tail is for lost calls: the goal follows at once.
+      const double leg = distance(list.points.back().at, aim.at).si();
+      if (leg > longest || leg < 1.1 * list.radius.si()) break;
+    }
     list.points.push_back({aim.at, model::WaypointRole::aim});
     if (aim.ends_list) return list;
   }
   if (!corrects && list.points.size() + 1 < most)
-    for (const auto& p : way_points(list.points.back().at, stints.subspan(1), flight.goal.centre, waters,
-                                    most - list.points.size() - 1))
+    for (const auto& p :
+         way_points(list.points.back().at, stints.subspan(1), flight.goal.centre, waters, most - list.points.size() - 1,
+                    longest_leg(flight, fastest, flight.schedule.stint.count())))
       list.points.push_back({p, model::WaypointRole::aim});
   list.points.push_back(goal);
   return list;

@@ -399,7 +399,8 @@ class Relay {
   std::optional<GeoPoint> second_point(int k, GeoPoint first, const Motion& ideal, Metres radius) {
     if (flight_.glider.current_correction != 1) {
       const auto later = foreseen_.subspan(std::min(foreseen_.size(), static_cast<std::size_t>(k) + 1));
-      const auto ground = way_points(first, later, flight_.goal.centre, waters_, 1);
+      const auto ground = way_points(first, later, flight_.goal.centre, waters_, 1,
+                                     longest_leg(flight_, ideal.mean.speed().si(), flight_.schedule.stint.count()));
       needs_ground_points_ = needs_ground_points_ || !ground.empty() || !in_sight(first, flight_.goal.centre, waters_);
       return ground.empty() ? std::nullopt : std::optional{ground.front()};
     }

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostSensors = 512;
 constexpr std::size_t kMostDamaged = 8;
 
-/// The automaton of the usual words is large; all readers share it.
+/// All readers of the usual words share one index of them.
 std::shared_ptr<const FactFinder> usual_finder() {
   static const auto finder = std::make_shared<const FactFinder>(DialogWords{});
   return finder;
@@ -79,7 +79,7 @@ std::vector<DialogEvent> DialogReader::flush_idle(Instant heard) {
     take_line(line);
     splitter_.forget(end);
   }
-  if (open_ && changed_) give_block();
+  if (open_ && changed_) give_block(block_);
   return std::exchange(events_, {});
 }
 
@@ -350,14 +350,13 @@ bool DialogReader::has_location() const {
 }
 
 void DialogReader::finish_block() {
-  if (open_ && changed_) give_block();
+  if (open_ && changed_) give_block(std::move(block_));
   open_ = false;
 }
 
-void DialogReader::give_block() {
+void DialogReader::give_block(SurfaceBlock block) {
   changed_ = false;
-  if (!block_.gps && !block_.gps_damaged) return;
-  auto block = block_;
+  if (!block.gps && !block.gps_damaged) return;
   if (block.vehicle.empty()) block.vehicle = name_;
   block.water = water_;
   events_.emplace_back(BlockRead{std::move(block)});

@@ -69,7 +69,7 @@ class DialogReader final : private LineSink {
   void begin_block_after_time();
   [[nodiscard]] bool has_location() const;
   void finish_block();
-  void give_block();
+  void give_block(SurfaceBlock block);
   void locate(Say say, Location* location);
   void read_sensor(SensorReading reading);
   void window(double seconds);

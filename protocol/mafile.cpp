@@ -12,12 +12,10 @@ namespace glidehelm::protocol {
 
 namespace {
 
-/// Text of the file for a message: short, and without bytes that could forge a log line.
+/// Text of the file for a message.
 std::string quoted(std::string_view text) {
   constexpr std::size_t kMost = 40;
-  std::string out = "'";
-  for (const char c : text.substr(0, kMost)) out += c < ' ' || c > '~' ? '?' : c;
-  return out + (text.size() > kMost ? "…'" : "'");
+  return "'" + std::string{text.substr(0, kMost)} + (text.size() > kMost ? "...'" : "'");
 }
 
 class Reader {
@@ -144,7 +142,7 @@ class Reader {
   void b_arg(const MafileLine& line) {
     if (section_ != Section::b_args)
       problems_.add(line.number, line.name.column, "section", Weight::fault,
-                    "b_arg outside <start:b_arg> … <end:b_arg>");
+                    "b_arg outside <start:b_arg> ... <end:b_arg>");
     BArg arg;
     arg.name = line.name.text;
     arg.unit = line.unit.text;

@@ -78,6 +78,15 @@ std::string allowed_text(const Rule& rule) {
   return number_text(rule.least) + " to " + number_text(rule.most);
 }
 
+/// Messages quote the file: without bytes that could forge a log line, and not without end.
+std::string printable(std::string_view message) {
+  constexpr std::size_t kMost = 300;
+  std::string out{message.substr(0, kMost)};
+  for (char& c : out)
+    if (c < ' ' || c > '~') c = '?';
+  return out;
+}
+
 /// Mission parameters u_mission_param_a… are named by values from 1,000,000 on (slocum.md 2.2).
 bool is_mission_parameter(double value) { return value >= 1e6; }
 
@@ -198,7 +207,7 @@ void check_places(const Mafile& file, const GeoPoint& glider, ProblemList& probl
 
 }  // namespace
 
-void ProblemList::add(int line, int column, std::string_view code, Weight weight, std::string message) {
+void ProblemList::add(int line, int column, std::string_view code, Weight weight, std::string_view message) {
   const bool strict = mode_ == MafileOptions::Mode::strict;
   if (weight == Weight::note && !strict) return;
   MafileProblem problem;
@@ -206,7 +215,7 @@ void ProblemList::add(int line, int column, std::string_view code, Weight weight
   problem.column = column;
   problem.code = code;
   problem.severity = strict || weight == Weight::fault ? Severity::error : Severity::warning;
-  problem.message = std::move(message);
+  problem.message = printable(message);
   problems_.push_back(std::move(problem));
 }
 

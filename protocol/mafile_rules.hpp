@@ -14,7 +14,7 @@ enum class Weight { note, doubt, fault };
 class ProblemList {
  public:
   explicit ProblemList(MafileOptions::Mode mode) : mode_{mode} {}
-  void add(int line, int column, std::string_view code, Weight weight, std::string message);
+  void add(int line, int column, std::string_view code, Weight weight, std::string_view message);
   /// In the order of the file; of one place in the order of finding.
   std::vector<MafileProblem> take();
 

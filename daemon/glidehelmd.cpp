@@ -26,7 +26,8 @@ int fly(glidehelm::config::Configuration configuration, glidehelm::world::RealWo
   }
   daemon::Log* voice = nullptr;
   auto& net = real.world().net;
-  world::SimulatedClock clock{net, real.world().clock, *configuration.daemon.simulated_clock, [&](std::string_view reason) {
+  world::SimulatedClock clock{net, real.world().clock, *configuration.daemon.simulated_clock,
+                              [&](std::string_view reason) {
                                 if (voice != nullptr)
                                   voice->info("", "the simulator's clock is gone: " + std::string{reason});
                                 net.stop();

@@ -29,7 +29,7 @@ struct PlanningRequest {
   std::string surfacing;  ///< key of the surfacing that the file will answer
   Purpose purpose{Purpose::goal};
   planning::Problem problem;
-  std::string method;                       ///< of planning.method
+  std::string method;  ///< of planning.method
   int slot{10};
   int max_waypoints{8};
   std::optional<Metres> list_radius;

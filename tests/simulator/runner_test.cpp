@@ -32,7 +32,8 @@ GliderPlan short_way() {
 /// A daemon of a few lines, in the same loop: the project's own simulated clock and a listening line. Its clock connects
 /// once the runner listens.
 struct FakeDaemon {
-  FakeDaemon(world::World world, std::string clock_socket) : net{world.net}, socket{std::move(clock_socket)} {
+  FakeDaemon(world::World world, std::string clock_socket)
+      : net{world.net}, wall{world.clock}, socket{std::move(clock_socket)} {
     auto made = net.listen_tcp("127.0.0.1", 0, [this](std::shared_ptr<world::Stream> s) { adopt(std::move(s)); });
     REQUIRE(made);
     listener = std::move(*made);
@@ -44,7 +45,7 @@ struct FakeDaemon {
   void live(const std::function<void()>& ready) {
     ++lives;
     received = 0;
-    clock.emplace(net, socket, [](std::string_view) {});
+    clock.emplace(net, wall, socket, [](std::string_view) {});
     clock->start(ready);
   }
   void adopt(std::shared_ptr<world::Stream> s) {
@@ -61,6 +62,7 @@ struct FakeDaemon {
   [[nodiscard]] std::uint16_t port() const { return listener->port(); }
 
   world::Net& net;
+  world::Clock& wall;
   std::string socket;
   std::optional<world::SimulatedClock> clock;
   std::unique_ptr<world::Listener> listener;

@@ -10,6 +10,7 @@
 #include "daemon/candidate.hpp"
 #include "protocol/dialog.hpp"
 #include "simulator/simulation.hpp"
+#include "tests/support/fields.hpp"
 
 namespace glidehelm::test {
 
@@ -177,24 +178,36 @@ class FlownMission {
   std::vector<planning::Plan> plans_;
 };
 
-/// A forecast of analytic fields over a box around two places.
-inline std::shared_ptr<const daemon::OceanSource> analytic_forecast(const std::vector<ocean::AnalyticSpec>& specs,
-                                                                    GeoPoint from, GeoPoint to, Instant start) {
-  ocean::Coverage box;
-  box.south = std::min(from.lat.radians(), to.lat.radians()) - 0.03;
-  box.north = std::max(from.lat.radians(), to.lat.radians()) + 0.03;
-  box.west = std::min(from.lon.radians(), to.lon.radians()) - 0.05;
-  box.east = std::max(from.lon.radians(), to.lon.radians()) + 0.05;
+/// A forecast on a 0.02° grid, sampled from analytic fields at `start` over a box around two places: a grid has the fast kernel.
+inline std::shared_ptr<const daemon::OceanSource> gridded_forecast(const std::vector<ocean::AnalyticSpec>& specs,
+                                                                   GeoPoint from, GeoPoint to, Instant start) {
+  constexpr double kStep = 0.02, kAround = 0.6;
+  const double south = std::min(from.lat.degrees(), to.lat.degrees()) - kAround,
+               north = std::max(from.lat.degrees(), to.lat.degrees()) + kAround;
+  const double west = std::min(from.lon.degrees(), to.lon.degrees()) - kAround,
+               east = std::max(from.lon.degrees(), to.lon.degrees()) + kAround;
   std::vector<ocean::AnalyticField> fields;
   for (const auto& spec : specs) {
-    auto field = ocean::AnalyticField::make(spec, start, box);
+    auto field = ocean::AnalyticField::make(spec, start, {});
     if (!field) throw std::runtime_error(field.error().message());
     fields.push_back(std::move(field).value());
   }
-  auto forecast = ocean::Forecast::prepare(fields);
+  const auto count = [](double span) { return static_cast<std::size_t>(span / kStep) + 1; };
+  auto grid = std::make_shared<ocean::Grid>(
+      make_grid(flat_axes(steps(south, kStep, count(north - south)), steps(west, kStep, count(east - west))),
+                [&](double lat, double lon, double, double) {
+                  double u = 0, v = 0;
+                  for (const auto& field : fields) {
+                    const auto sample = field.sample(geo_point(lat, lon), Depth{}, epoch_seconds(start));
+                    u += sample->current.east.si();
+                    v += sample->current.north.si();
+                  }
+                  return std::pair{u, v};
+                }));
+  auto forecast = ocean::Forecast::prepare(ocean::view_of(*grid), ocean::DiveProfile{}, {}, grid);
   if (!forecast) throw std::runtime_error(forecast.error().message());
   return std::make_shared<const daemon::OceanSource>(
-      daemon::OceanSource{std::move(forecast).value(), std::nullopt, {}, specs, start, box, {}, {}});
+      daemon::OceanSource{std::move(forecast).value(), std::nullopt, {}, {}, start, {}, {}, {}});
 }
 
 }  // namespace glidehelm::test

@@ -18,7 +18,12 @@ namespace {
 
 constexpr Seconds kIdle{2};
 constexpr Seconds kVerifierDeadline{10};
+// A sanitizer reserves terabytes of address space before main: under a limit its programs cannot start.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kVerifierMemory = 0;
+#else
 constexpr std::size_t kVerifierMemory = std::size_t{4} << 30;
+#endif
 
 RecordType type_of(const std::string& kind) {
   for (const auto type :
@@ -32,6 +37,23 @@ mission::EmissionEnded ended(const Emission& emission, const std::string& surfac
   using To = mission::EmissionEnded::Outcome;
   constexpr std::array<To, 5> kOutcomes{To::queued, To::foreign_file, To::late, To::aborted, To::unknown};
   return {kOutcomes[static_cast<std::size_t>(emission.outcome)], surfacing, emission.detail};
+}
+
+/// How the emission for `surfacing` ended, when its end is in the journal and the crash came before the pilot was told. An
+/// aborted one counts as none: nothing was visible.
+std::optional<mission::EmissionEnded> end_in(const std::vector<JournalRecord>& past, const std::string& glider,
+                                             const std::string& surfacing) {
+  using Outcome = mission::EmissionEnded::Outcome;
+  for (auto record = past.rbegin(); record != past.rend(); ++record) {
+    if (record->type != RecordType::committed && record->type != RecordType::recovered) continue;
+    const auto json = nlohmann::json::parse(record->payload, nullptr, false);
+    const auto is = [&](const char* key, const std::string& text) { return json.contains(key) && json[key] == text; };
+    if (!json.is_object() || !is("glider", glider) || !is("surfacing", surfacing)) continue;
+    if (record->type == RecordType::committed)
+      return mission::EmissionEnded{Outcome::queued, surfacing, "the file was queued before the crash"};
+    return mission::EmissionEnded{Outcome::unknown, surfacing, "the crash before the last one left that open"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -191,7 +213,8 @@ void Session::hear(const protocol::DialogEvent& event) {
     }
     void operator()(const protocol::MafilesReread&) const { session.feed(mission::ListReread{}); }
     void operator()(const protocol::AbortSeen& e) const {
-      session.desk_.log.alert(session.entry_.name, fmt::format("the dialog says that a mission was aborted: {}", e.cause));
+      session.desk_.log.alert(session.entry_.name,
+                              fmt::format("the dialog says that a mission was aborted: {}", e.cause));
     }
     void operator()(const protocol::PromptSeen&) const {}
     void operator()(const protocol::KeyHeard&) const {}
@@ -452,7 +475,11 @@ void Session::recover(const std::vector<JournalRecord>& past) {
   desk_.log.info(entry_.name, fmt::format("journal: {} events replayed, {} surfacings, the last one is {}", replayed,
                                           pilot_.surfacings(), mission::word(pilot_.stage())));
   mission::Restarted restarted;
-  if (!settled.empty()) restarted.emission = ended(settled.back().emission, settled.back().surfacing);
+  for (const auto& recovered : settled)
+    if (recovered.surfacing == pilot_.surfacing_key())
+      restarted.emission = ended(recovered.emission, recovered.surfacing);
+  if (!restarted.emission && pilot_.stage() == mission::Stage::emitting)
+    restarted.emission = end_in(past, entry_.name, pilot_.surfacing_key());
   feed(restarted);
 }
 

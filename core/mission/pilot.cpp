@@ -324,6 +324,7 @@ void Pilot::arrive_if_there(const model::Surfacing& s) {
 void Pilot::set_deadline(Tick deadline) {
   const Seconds cap = mission_ ? mission_->window_max : Seconds{900};
   deadline_ = std::min(deadline, later(first_heard_, cap));
+  deadline_utc_ = now_.utc + std::chrono::duration_cast<Instant::duration>(deadline_ - now_.tick);
   set_timer(Timer::deadline, later(deadline_, -kEmitBeforeDeadline));
 }
 
@@ -673,12 +674,13 @@ void Pilot::take_over(const MissionChanged& change) {
 /// window is open (trust.md 6.2).
 void Pilot::on(const Restarted& e) {
   if (!last_ || stage_ == Stage::idle) return;
-  if (stage_ == Stage::dived || stage_ == Stage::queued || stage_ == Stage::kept || stage_ == Stage::stood_down) expect_next();
+  if (stage_ == Stage::dived || stage_ == Stage::queued || stage_ == Stage::kept || stage_ == Stage::stood_down)
+    expect_next();
   if (stage_ == Stage::dived) return;
   // Ticks of before the restart may be of another boot: the deadline is rebuilt from UTC.
   const Seconds cap = mission_ ? mission_->window_max : Seconds{900};
   first_heard_ = later(now_.tick, -between(last_->heard, now_.utc));
-  deadline_ = later(first_heard_, std::min(cap, last_->until_diving.value_or(cap)));
+  deadline_ = std::min(later(now_.tick, between(now_.utc, deadline_utc_)), later(first_heard_, cap));
   if (e.emission && e.emission->surfacing == key_ && e.emission->outcome != EmissionEnded::Outcome::aborted) {
     stage_ = Stage::emitting;
     on(*e.emission);

@@ -127,6 +127,7 @@ class Pilot {
   bool at_surface_seen_{}, mission_named_{};
   std::string wrong_mission_;
   Tick first_heard_{}, deadline_{};
+  Instant deadline_utc_{};  ///< the same moment, for a restart: ticks of another boot mean nothing
   bool budget_over_{}, planning_over_{};
   std::uint64_t request_{};
   std::vector<Ranked> ranked_;

@@ -31,12 +31,13 @@ inline bool wait_until(const std::function<bool()>& happened, std::chrono::secon
   return true;
 }
 
-/// A port of the loopback that nobody listens on now and that no other test process will name: below the range from which the
-/// system takes ports for connections, 16 for each process.
+/// A port of the loopback that nobody listens on now: below the range from which the system takes ports for connections, and
+/// from another place for each process, so that tests side by side do not meet.
 inline int free_port() {
-  static int next = 0;
-  for (; next < 16; ++next) {
-    const int port = 16'000 + static_cast<int>(getpid() % 1000) * 16 + next;
+  constexpr int kFirst = 16'000, kPorts = 16'000, kApart = 32;
+  static int next = static_cast<int>(getpid() % (kPorts / kApart)) * kApart;
+  for (int tries = 0; tries < kPorts; ++tries) {
+    const int port = kFirst + next++ % kPorts;
     const int probe = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     const int yes = 1;
     setsockopt(probe, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
@@ -46,9 +47,7 @@ inline int free_port() {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     const bool is_free = bind(probe, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
     close(probe);
-    if (!is_free) continue;
-    ++next;
-    return port;
+    if (is_free) return port;
   }
   FAIL("no free port");
   return 0;

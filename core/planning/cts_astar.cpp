@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/planning/flight.hpp"
+#include "core/planning/path_keeping.hpp"
 
 namespace glidehelm::planning {
 
@@ -85,14 +86,11 @@ Attempt attempt(const Problem& problem, const ocean::Ocean& ocean, const chart::
                 Metres allowance) {
   Attempt a{search_finely(problem, ocean, chart, purse, allowance), {}, false};
   const bool reaches = arrives(a.found);
-  auto flight = flight_of(problem);
   // Without an arrival the flight ends with the last heading: steering on to the goal is what the search found impossible.
-  if (!reaches) {
-    const auto stints = static_cast<int>(a.found.headings.size());
-    const double end = stints == 0 ? 0.0 : problem.schedule.surfacing_time(stints - 1).count();
-    flight.horizon_s = std::min(flight.horizon_s, problem.start.fix_s + end + 1.0);  // a second: times round
-  }
-  const auto flown = vehicle::fly_headings(a.found.headings, flight, waters_of(problem, ocean, chart));
+  const auto stints = static_cast<int>(a.found.headings.size());
+  const double end = stints == 0 ? 0.0 : problem.schedule.surfacing_time(stints - 1).count();
+  const double until_s = reaches ? problem.horizon_s : problem.start.fix_s + end + 1.0;  // a second: times round
+  const auto flown = fly_path(a.found.headings, problem, ocean, chart, until_s);
   a.plan = plan_from("cts-astar", flown, problem, {});
   a.grounded = reaches && !a.plan.reaches_goal();
   if (!reaches && !a.plan.reaches_goal()) a.plan.reason = reason_for(a.found, problem);

@@ -51,8 +51,8 @@ namespace glidehelm::planning {
 ///    has. The earliest arrival counts.
 ///  - **Integration.** Classical Runge–Kutta on all headings in lockstep, with the step of vehicle::lane_step.
 ///
-/// After the search its headings are flown again by vehicle::fly_headings: as the lists that will be emitted, with fine
-/// steps. That flight is the plan; it may differ from the search by steering and integration error.
+/// After the search its headings are flown again by fly_path (path_keeping.hpp): as the lists that will be emitted, with
+/// fine steps, each heading corrected for what law and integration differ. That flight is the plan.
 ///
 /// When the goal is not reached the plan is a closest approach: the way to the label nearest to the goal, and the reason
 /// names what stopped the search: the horizon, the end of the forecast, or walls. Labels from which the goal cannot be

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/planning/cts_astar.hpp"
+#include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/search_grid.hpp"
 
@@ -33,35 +34,6 @@ struct Open {
 };
 /// Order of a heap whose top is the smallest f, then the label created first.
 bool after(const Open& a, const Open& b) { return a.f > b.f || (a.f == b.f && a.label > b.label); }
-
-/// What no glider can outrun: dives at `dive` m/s, drifts at `drift` m/s, on a schedule.
-struct Envelope {
-  double dive{}, drift{}, stint{}, surface{};
-
-  /// The least time over a distance, from a surfacing on.
-  [[nodiscard]] double least_time(double distance) const {
-    if (distance <= 0) return 0;
-    const double cycle = drift * surface + dive * stint;
-    const double full = std::floor(distance / cycle);
-    return full * (surface + stint) + within(distance - full * cycle, surface, stint);
-  }
-  /// The same from a fix: its own drift and first stint come before.
-  [[nodiscard]] double least_time_from_fix(double distance, const model::DiveSchedule& schedule) const {
-    const double wait = schedule.time_to_dive.count(), first = schedule.first_stint.count();
-    const double covered = drift * wait + dive * first;
-    if (distance <= covered) return within(distance, wait, first);
-    return wait + first + least_time(distance - covered);
-  }
-
- private:
-  /// Over a distance that one drift and one dive cover.
-  [[nodiscard]] double within(double distance, double wait, double dive_time) const {
-    if (distance <= 0) return 0;
-    const double drifted = drift * wait;
-    if (distance <= drifted) return distance / drift;
-    return wait + std::min(dive_time, (distance - drifted) / dive);
-  }
-};
 
 class Search {
  public:

@@ -78,6 +78,13 @@ double longest_leg(const Flight& flight, double fastest_current, double seconds)
   return 1.09 * (flight.glider.believed_speed.si() + fastest_current) * seconds;
 }
 
+/// True when an aim may follow another one in a list: no farther than a stint flies, and not in its ring. Where the
+/// believed current turns from one stint to the next, aim points of two stints can lie so.
+bool follows(GeoPoint before, GeoPoint aim, double longest, Metres radius) {
+  const double leg = distance(before, aim).si();
+  return leg <= longest && leg >= 1.1 * radius.si();
+}
+
 /// Points of a plan's way that the straight way from `from` to the goal needs around land and areas: from each point the
 /// farthest of `later` surfacings that is in sight and within `longest` metres, until the goal is. At most `at_most`
 /// points.
@@ -212,6 +219,100 @@ std::optional<model::WaypointList> arriving_list(const Stint& stint, const Fligh
 
 }  // namespace
 
+namespace {
+
+double speed_of_drift(GeoPoint from, GeoPoint to, Seconds time) {
+  return time.count() > 0 ? distance(from, to).si() / time.count() : 0.0;
+}
+
+/// Makes the list of a plan whose first stint does not arrive by steering home.
+class ListMaker {
+ public:
+  ListMaker(std::span<const Stint> stints, const Flight& flight, const Waters& waters, const ListOptions& options)
+      : stints_{stints},
+        flight_{flight},
+        waters_{waters},
+        options_{options},
+        most_{static_cast<std::size_t>(std::max(1, options.max_waypoints))},
+        corrects_{flight.glider.current_correction == 1} {}
+
+  /// The list as product.md has it.
+  model::WaypointList make() {
+    list_.at_end = options_.at_end;
+    choose_radius();
+    const bool open = add_aims();
+    if (!open) return list_;
+    if (!corrects_ && list_.points.size() + 1 < most_) {
+      fastest_ = std::max(fastest_, stints_[0].dac.speed().si());
+      const double longest = longest_leg(flight_, fastest_, flight_.schedule.stint.count());
+      for (const auto& p : way_points(list_.points.back().at, stints_.subspan(1), flight_.goal.centre, waters_,
+                                      most_ - list_.points.size() - 1, longest))
+        list_.points.push_back({p, WaypointRole::aim});
+    }
+    list_.points.push_back({flight_.goal.centre, WaypointRole::goal});
+    return list_;
+  }
+
+ private:
+  using WaypointRole = model::WaypointRole;
+
+  [[nodiscard]] Current believed(std::size_t k) const {
+    return believed_in(flight_, k == 0 ? Current{} : stints_[k - 1].dac, static_cast<int>(k));
+  }
+  [[nodiscard]] Aim aim_of(std::size_t k, Metres radius) const {
+    const Stint& s = stints_[k];
+    return aim_point(s.dive, s.heading, flight_.glider, believed(k), s.surface_s - s.dive_s, radius);
+  }
+
+  void choose_radius() {
+    double largest_drift = 0;
+    for (std::size_t k = 0; k < stints_.size() && (k == 0 || !stints_[k].arrives) && k + 1 < most_; ++k) {
+      if (k > 0 && !corrects_) break;
+      legs_.push_back(aim_of(k, Metres{0}).length);
+      if (k + 1 < stints_.size())
+        largest_drift = std::max(largest_drift, distance(stints_[k].surface, stints_[k + 1].dive).si());
+    }
+    list_.radius = list_radius(legs_, largest_drift, options_);
+  }
+
+  /// False when the last of them ends the list.
+  bool add_aims() {
+    for (std::size_t k = 0; k < legs_.size(); ++k) {
+      const double drift = k == 0 ? speed_of_drift(flight_.fix, stints_[0].dive, flight_.schedule.time_to_dive)
+                                  : speed_of_drift(stints_[k - 1].surface, stints_[k].dive, flight_.schedule.surface);
+      fastest_ = std::max({fastest_, believed(k).speed().si(), drift});
+      const double longest = longest_leg(flight_, fastest_, stints_[k].surface_s - stints_[k].dive_s);
+      if (k == 0 && !options_.radius) {
+        const double too_long = distance(flight_.fix, aim_of(0, list_.radius).at).si() - longest;
+        if (too_long > 0) list_.radius = Metres{std::max(kSmallestRadius, std::floor(list_.radius.si() - too_long))};
+      }
+      const auto aim = aim_of(k, list_.radius);
+      if (k > 0 && !follows(list_.points.back().at, aim.at, longest, list_.radius)) return true;
+      list_.points.push_back({aim.at, WaypointRole::aim});
+      if (aim.ends_list) return false;
+    }
+    return true;
+  }
+
+  std::span<const Stint> stints_;
+  const Flight& flight_;
+  const Waters& waters_;
+  const ListOptions& options_;
+  std::size_t most_;
+  bool corrects_;
+  model::WaypointList list_;
+  std::vector<double> legs_;
+  double fastest_{};  ///< m/s, that glider or forecast believe in up to the leg at hand
+};
+
+/// True when the list alone comes to no harm: it arrives, or flies on to the horizon or the end of the forecast.
+bool comes_through(const model::WaypointList& list, const Flight& flight, const Waters& waters) {
+  const auto flown = fly_list(list, flight, waters);
+  return flown.arrival_s || !flown.lost || (*flown.lost == Lost::left_forecast && flown.stints.size() >= 2);
+}
+
+}  // namespace
+
 model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight, const Waters& waters,
                              const ListOptions& options) {
   const auto goal = model::Waypoint{flight.goal.centre, model::WaypointRole::goal};
@@ -219,50 +320,18 @@ model::WaypointList list_for(std::span<const Stint> stints, const Flight& flight
   if (stints.front().arrives)
     if (auto list = arriving_list(stints.front(), flight, waters, options)) return std::move(*list);
 
-  const auto most = static_cast<std::size_t>(std::max(1, options.max_waypoints));
-  const bool corrects = flight.glider.current_correction == 1;
-  const auto aim_of = [&](std::size_t k, Metres radius) {
-    const Stint& s = stints[k];
-    const auto believed = believed_in(flight, k == 0 ? Current{} : stints[k - 1].dac, static_cast<int>(k));
-    return aim_point(s.dive, s.heading, flight.glider, believed, s.surface_s - s.dive_s, radius);
-  };
-  double largest_drift = 0;
-  std::vector<double> legs;
-  for (std::size_t k = 0; k < stints.size() && (k == 0 || !stints[k].arrives) && k + 1 < most; ++k) {
-    if (k > 0 && !corrects) break;
-    legs.push_back(aim_of(k, Metres{0}).length);
-    if (k + 1 < stints.size())
-      largest_drift = std::max(largest_drift, distance(stints[k].surface, stints[k + 1].dive).si());
-  }
-  model::WaypointList list;
-  list.at_end = options.at_end;
-  list.radius = list_radius(legs, largest_drift, options);
-  double fastest = 0;
-  for (std::size_t k = 0; k < legs.size(); ++k) {
-    fastest = std::max({fastest, stints[k].dac.speed().si(),
-                        believed_in(flight, k == 0 ? Current{} : stints[k - 1].dac, static_cast<int>(k)).speed().si()});
-    const double longest = longest_leg(flight, fastest, stints[k].surface_s - stints[k].dive_s);
-    if (k == 0 && !options.radius) {
-      const double too_long = distance(flight.fix, aim_of(0, list.radius).at).si() - longest;
-      if (too_long > 0) list.radius = Metres{std::max(kSmallestRadius, std::floor(list.radius.si() - too_long))};
+  const auto whole = ListMaker{stints, flight, waters, options}.make();
+  if (whole.points.back().role != model::WaypointRole::goal || comes_through(whole, flight, waters)) return whole;
+  // Land, an area or the edge of the field lies between the last aim and the goal.
+  auto list = whole;
+  list.points.pop_back();
+  for (; !list.points.empty(); list.points.pop_back())
+    for (const bool to_goal : {false, true}) {
+      auto shorter = list;
+      if (to_goal) shorter.points.push_back(goal);
+      if (shorter.points.size() < whole.points.size() && comes_through(shorter, flight, waters)) return shorter;
     }
-    const auto aim = aim_of(k, list.radius);
-    if (k > 0) {
-      // Where the believed current turns from one stint to the next, aim points of two stints lie farther apart than a
-      // stint can fly, or on top of each other. The tail is for lost calls: the goal follows at once.
-      const double leg = distance(list.points.back().at, aim.at).si();
-      if (leg > longest || leg < 1.1 * list.radius.si()) break;
-    }
-    list.points.push_back({aim.at, model::WaypointRole::aim});
-    if (aim.ends_list) return list;
-  }
-  if (!corrects && list.points.size() + 1 < most)
-    for (const auto& p :
-         way_points(list.points.back().at, stints.subspan(1), flight.goal.centre, waters, most - list.points.size() - 1,
-                    longest_leg(flight, fastest, flight.schedule.stint.count())))
-      list.points.push_back({p, model::WaypointRole::aim});
-  list.points.push_back(goal);
-  return list;
+  return whole;
 }
 
 namespace {
@@ -332,6 +401,7 @@ class Relay {
     for (int k = 0; k < kMostStints; ++k) {
       const auto drifted = drift(now, flight_, waters_, k);
       closest_.note(drifted);
+      drift_speed_ = drifted.mean.speed().si();
       if (drifted.arrival_s && *drifted.arrival_s <= flight_.horizon_s) {
         flown_.arrival_s = drifted.arrival_s;
         if (!flown_.stints.empty()) flown_.stints.back().arrives = true;
@@ -399,8 +469,9 @@ class Relay {
   std::optional<GeoPoint> second_point(int k, GeoPoint first, const Motion& ideal, Metres radius) {
     if (flight_.glider.current_correction != 1) {
       const auto later = foreseen_.subspan(std::min(foreseen_.size(), static_cast<std::size_t>(k) + 1));
+      const double fastest = std::max(ideal.mean.speed().si(), drift_speed_);
       const auto ground = way_points(first, later, flight_.goal.centre, waters_, 1,
-                                     longest_leg(flight_, ideal.mean.speed().si(), flight_.schedule.stint.count()));
+                                     longest_leg(flight_, fastest, flight_.schedule.stint.count()));
       needs_ground_points_ = needs_ground_points_ || !ground.empty() || !in_sight(first, flight_.goal.centre, waters_);
       return ground.empty() ? std::nullopt : std::optional{ground.front()};
     }
@@ -410,7 +481,10 @@ class Relay {
     const auto next = helm_(k + 1, dive.end.at(), dive.end.t_s);
     if (!next) return std::nullopt;
     const double seconds = flight_.schedule.stint_length(k + 1).count();
-    return aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius).at;
+    const auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius).at;
+    const double fastest = std::max({believed_in(flight_, last_.mean, k).speed().si(), ideal.mean.speed().si(),
+                                     drift_speed_, dive.mean.speed().si()});
+    return follows(first, aim, longest_leg(flight_, fastest, seconds), radius) ? std::optional{aim} : std::nullopt;
   }
 
   const Helm& helm_;
@@ -420,6 +494,7 @@ class Relay {
   Closest closest_;
   FlownList flown_;
   Motion last_;
+  double drift_speed_{};  ///< of the drift before the stint at hand
   bool needs_ground_points_{};
 };
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "core/planning/planner.hpp"
+#include "core/vehicle/steering.hpp"
+
+namespace glidehelm::planning {
+
+/// Flies a planner's headings as the lists that will be emitted (vehicle::fly_helm), keeping to the path that they mean.
+///
+/// The glider's law leaves a held heading for the last minutes of a stint, up to a few hundred metres. Over many stints in
+/// currents that part neighbouring paths that adds up, and the headings of a path that is no longer flown lead elsewhere.
+/// So each heading is turned, by at most 15°, until the stint comes up beside where the held headings would have come up
+/// (the error along the track stays); the last one until its track meets the goal. A stint that comes up within 20 m as it is
+/// keeps its heading.
+///
+/// `until_s`: epoch second after which nothing is flown; the problem's horizon when that is earlier. After the last heading
+/// the goal itself is steered to. Two or three stints are integrated for one that is corrected.
+vehicle::FlownList fly_path(std::span<const Heading> headings, const Problem& problem, const ocean::Ocean& ocean,
+                            const chart::Chart& chart, double until_s = 1e18);
+
+}  // namespace glidehelm::planning

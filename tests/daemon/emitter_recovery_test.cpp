@@ -242,7 +242,7 @@ TEST_CASE("a human's file that appears at any instant stays, whatever fails besi
   for (const auto before : {Before::nothing, Before::ours}) {
     const auto first = operations_of_start(before), last = operations_of(before);
     for (auto when = first + 1; when <= last; ++when) {
-      tally.add({before, Who::human, when, {}, 1, {}, 1});
+      for (std::uint64_t power = 0; power < 16; ++power) tally.add({before, Who::human, when, {}, power, {}, 1});
       for (auto at = when; at <= last + 4; ++at) {
         for (const std::uint64_t power : {0, 1, 2, 3})
           tally.add({before, Who::human, when, {Fault::What::power_cut, at, 0, false}, power, {}, 1});

@@ -181,6 +181,34 @@ TEST_CASE("one flipped bit in any record but the last is corruption, in the last
   CHECK(refused == last * 8);
 }
 
+TEST_CASE("what a killed process left unsynced is made durable by the next, and its rot is corruption from then on") {
+  Disk disk;
+  {
+    auto journal = disk.open({1U << 20, 4096});
+    REQUIRE(journal);
+    for (int i = 0; i < 3; ++i) REQUIRE((*journal)->append(RecordType::event, payload(i), kUtc, kTick));
+  }
+  disk.files.kill();
+  const auto border = borders(*disk.files.get(kFirst));
+  REQUIRE(disk.open({1U << 20, 4096}));
+  CHECK(disk.files.durable(kFirst) == disk.files.get(kFirst));
+  disk.files.kill();
+  disk.files.rot(kFirst, [&](std::string& bytes) { bytes[border[2] + 90] ^= 1; });
+  const auto journal = disk.open({1U << 20, 4096});
+  REQUIRE_FALSE(journal);
+  CHECK(journal.error().what == What::corrupt);
+}
+
+TEST_CASE("a clean stop can make everything durable") {
+  Disk disk;
+  auto journal = disk.open();
+  REQUIRE(journal);
+  REQUIRE((*journal)->append(RecordType::event, payload(1), kUtc, kTick));
+  CHECK(disk.files.durable(kFirst)->find(payload(1)) == std::string::npos);
+  CHECK((*journal)->sync());
+  CHECK(disk.files.durable(kFirst)->find(payload(1)) != std::string::npos);
+}
+
 TEST_CASE("a record that was cut out, repeated or put in from another journal breaks the chain") {
   const auto whole = segment_of(3);
   const auto border = borders(whole);
@@ -360,6 +388,7 @@ TEST_CASE("a segment that cannot be opened is not replaced by the old one") {
       ++refused;
   }
   CHECK(refused == 1);
+  CHECK(disk.files.get(kFirst)->size() < kSmall.segment + 200);  // nothing was put behind its end
   journal->reset();
   auto again = disk.open();
   REQUIRE(again);

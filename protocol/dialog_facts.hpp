@@ -11,7 +11,8 @@
 
 namespace glidehelm::protocol {
 
-/// The texts that no sample shows and that may differ between firmwares and dockservers (slocum.md 5, note on evidence).
+/// The texts that no sample shows and that may differ between firmwares and dockservers (slocum.md 5, note on
+/// evidence).
 struct DialogWords {
   std::vector<std::string> reread{"MAFILES will be re-read", "MAFILES reread"};
   std::vector<std::string> transfer_starts{"Starting zModem transfer of "};  ///< a file name follows
@@ -78,8 +79,8 @@ struct Fact {
 class FactFinder {
  public:
   explicit FactFinder(const DialogWords& words);
-  /// `joined_at` is where two pieces of the line were put together (Line::kWhole: nowhere). A number that spans it is not
-  /// trusted unless the layout of the line proves that no byte was lost.
+  /// `joined_at` is where two pieces of the line were put together (Line::kWhole: nowhere). A number that spans it is
+  /// not trusted unless the layout of the line proves that no byte was lost.
   void find(std::string_view text, std::size_t joined_at, std::vector<Fact>& facts) const;
 
  private:

@@ -26,9 +26,9 @@ inline constexpr double kLargestRadius = 100'000;  ///< metres; beyond it the li
 
 /// The bytes of a goto list (slocum.md W1–W4, trust.md V-1…V-4): behaviour name first, our comment header, every b_arg
 /// written out in SFMC's order with masterdata units, then longitude and latitude in `%.4f` of DDMM through whole units
-/// of 1e-4 minute; LF, ASCII, lines of at most 100 characters, a final newline. num_waypoints equals the list. `loop` is
-/// num_legs_to_run −1 with end_action 0 (never reached), `wait` is −2 with end_action 6. The radius is written in 0.1 m.
-/// Precondition: 1–99 points, kSmallestRadius ≤ radius ≤ kLargestRadius. The result is below 4 KiB then.
+/// of 1e-4 minute; LF, ASCII, lines of at most 100 characters, a final newline. num_waypoints equals the list. `loop`
+/// is num_legs_to_run −1 with end_action 0 (never reached), `wait` is −2 with end_action 6. The radius is written in
+/// 0.1 m. Precondition: 1–99 points, kSmallestRadius ≤ radius ≤ kLargestRadius. The result is below 4 KiB then.
 std::string write_goto_list(const model::WaypointList& list, const GotoListComment& comment);
 
 /// Why bytes are not a list of ours; line 0 is the file as a whole.

@@ -36,8 +36,9 @@ class LineSink {
 /// Bytes of the dialog to lines, the same for every chunking (slocum.md R1–R4):
 ///  - a line ends with LF, or with CR when text follows it; CR before LF is dropped, as are NUL, DEL and all control
 ///    characters but tab. Bytes above 127 pass: UTF-8 is never required;
-///  - dockserver blocks are cut out, also from the middle of a line, and handed over apart. One that never ends is given
-///    up at 64 KiB or when a console opens (`Connection Event:`, `Iridium console active and ready`, `Vehicle Name:`);
+///  - dockserver blocks are cut out, also from the middle of a line, and handed over apart. One that never ends is
+///    given up at 64 KiB or when a console opens (`Connection Event:`, `Iridium console active and ready`, `Vehicle
+///    Name:`);
 ///  - from a Zmodem header or a ZDLE byte on nothing is given until a line of plain text comes;
 ///  - a line longer than 4 KiB is discarded up to its end, except for a `Connection Event:` in its last 256 bytes.
 /// Memory: one line, one block. Time: linear.

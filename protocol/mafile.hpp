@@ -12,8 +12,8 @@ namespace glidehelm::protocol {
 
 enum class Severity { warning, error };
 
-/// Something about a mafile that its pilot should know. Lines and columns count from 1, columns in bytes; 0 means the file
-/// as a whole. Codes are stable for scripts:
+/// Something about a mafile that its pilot should know. Lines and columns count from 1, columns in bytes; 0 means the
+/// file as a whole. Codes are stable for scripts:
 ///
 ///   behavior-name       the first line is not behavior_name=WORD
 ///   unknown-behavior    no behaviour of that name is known to be read from a mafile

@@ -8,9 +8,9 @@
 
 namespace glidehelm::protocol {
 
-/// Finds many fixed phrases in one pass over a text: what a dialog line says is searched for, never expected at a column
-/// (slocum.md R5). Two small table look-ups per byte tell whether a phrase can begin there; only then are the phrases
-/// with these first two bytes compared. `const` use of one object from several threads is safe.
+/// Finds many fixed phrases in one pass over a text: what a dialog line says is searched for, never expected at a
+/// column (slocum.md R5). Two small table look-ups per byte tell whether a phrase can begin there; only then are the
+/// phrases with these first two bytes compared. `const` use of one object from several threads is safe.
 class Phrases {
  public:
   /// Phrases of fewer than two bytes are ignored. Indices are what `find` reports.
@@ -21,8 +21,8 @@ class Phrases {
   struct Hit {
     std::size_t phrase{}, begin{}, end{};
   };
-  /// Calls `take(Hit)` for each occurrence, in the order of their beginnings. Of phrases that begin at the same byte the
-  /// longest alone is reported, of equal ones the first.
+  /// Calls `take(Hit)` for each occurrence, in the order of their beginnings. Of phrases that begin at the same byte
+  /// the longest alone is reported, of equal ones the first.
   template <class Take>
   void find(std::string_view text, Take&& take) const {
     if (text.size() < 2) return;

@@ -15,8 +15,9 @@
 /// read as UTC.
 namespace glidehelm::protocol {
 
-/// One distinct fix of a log, used or refused. Prints of the same fix (S4) are one entry: place, age and times are those
-/// of the first print; mission and reason those of the first print that had them; the rest is the last that was said.
+/// One distinct fix of a log, used or refused. Prints of the same fix (S4) are one entry: place, age and times are
+/// those of the first print; mission and reason those of the first print that had them; the rest is the last that was
+/// said.
 struct ReplayedFix {
   int line{};  ///< of the `GPS Location:` line
   std::string glider, mission, segment;
@@ -44,8 +45,8 @@ struct ReplayedLog {
   friend bool operator==(const ReplayedLog&, const ReplayedLog&) = default;
 };
 
-/// Replays logs one after the other, as one long watch: a fix that an earlier log of the same glider has shown is unchanged
-/// and refused by S6.
+/// Replays logs one after the other, as one long watch: a fix that an earlier log of the same glider has shown is
+/// unchanged and refused by S6.
 class Replay {
  public:
   explicit Replay(Limits limits) : limits_{std::move(limits)} {}

@@ -13,8 +13,8 @@ void require(bool holds) {
 
 }  // namespace
 
-/// Any bytes as a dialog: the same answer in pieces of a size that the input chooses, accepted fixes keep the promises of
-/// accept_fix, and idle flushes between the pieces lose no fix.
+/// Any bytes as a dialog: the same answer in pieces of a size that the input chooses, accepted fixes keep the promises
+/// of accept_fix, and idle flushes between the pieces lose no fix.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace glidehelm;
   using namespace glidehelm::protocol;

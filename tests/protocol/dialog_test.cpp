@@ -153,7 +153,7 @@ TEST_CASE("silence gives nothing of a block without a fix, and nothing of an unf
 
 TEST_CASE("a prompt has no line end: silence lets it be understood, once") {
   const std::string before = "Connection Event: Carrier Detect found.\r\n\r\n", prompt = "GliderDos N -1 >",
-                    after = "238.72    No login script found for processing.\r\n";
+                    after = "412.50    No login script found for processing.\r\n";
   DialogReader reader;
   CHECK(reader.append(before + prompt, kNow).size() == 1);
   CHECK(reader.flush_idle(kNow) == Events{PromptSeen{Console::gliderdos, 'N', -1}});
@@ -230,7 +230,7 @@ TEST_CASE("a carrier on which nothing is said is no connection of its own") {
   const std::string found = "Connection Event: Carrier Detect found.", lost = "Connection Event: Carrier Detect lost.";
   CHECK(hear(found + lost + found + "  9000    Iridium console active and ready...\r\n").counts.connections == 1);
   CHECK(hear(test::connection_block() + lost + "\r\n" + test::connection_block()).counts.connections == 2);
-  CHECK(hear("RING\r\nCONNECT 4800\r\n 34132    Iridium console active and ready...\r\n").counts.connections == 1);
+  CHECK(hear("RING\r\nCONNECT 4800\r\n 41250    Iridium console active and ready...\r\n").counts.connections == 1);
   CHECK(hear(test::console_line() + test::console_line()).counts.connections == 2);
 }
 
@@ -356,7 +356,8 @@ TEST_CASE("memory is bounded whatever comes") {
 }
 
 TEST_CASE("no change of one byte of a fix line gives another position, unless it makes a digit, a sign or a blank") {
-  // A new digit or sign, or a blank for the first of a number, can keep the layout, so only the rules that remember (S5) can see it; all else is seen here.
+  // A new digit or sign, or a blank for the first of a number, can keep the layout, so only the rules that remember
+  // (S5) can see it; all else is seen here.
   const auto text = test::connection_block();
   const auto gps = text.find("GPS Location:");
   const auto end = text.find("secs ago", gps);

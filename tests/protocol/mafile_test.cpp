@@ -164,7 +164,7 @@ TEST_CASE("counts: the listed waypoints win") {
 }
 
 TEST_CASE("decimal degrees and swapped numbers show only beside the glider") {
-  const std::string degrees = "-118.5687 33.4120\n", swapped = "2910.5000 -1530.0000\n", far = "-1530.0 6010.5\n";
+  const std::string degrees = "-118.5321 33.4210\n", swapped = "2910.5000 -1530.0000\n", far = "-1530.0 6010.5\n";
   const std::map<std::string, std::string> one{{"num_waypoints(nodim)", "1"}};
   CHECK(said(lenient(list(one, degrees))).empty());
   CHECK(said(near(list(one, degrees), 33.4, -118.6)) == Said{"decimal-degrees:13:1"});

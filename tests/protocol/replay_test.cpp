@@ -189,7 +189,7 @@ std::vector<std::string> words(const std::string& text) {
   return {std::istream_iterator<std::string>{in}, {}};
 }
 
-/// `2023-11-09T10:06:10 5949.127 2317.927 59.818783 23.298783`: time, texts, degrees.
+/// `2026-05-03T04:09:31 2901.250 -1528.400 29.020833 -15.473333`: time, texts, degrees.
 void check_fix(const std::string& expected, const ReplayedFix& fix) {
   const auto w = words(expected);
   REQUIRE(w.size() == 5);
@@ -248,9 +248,9 @@ TEST_CASE("real data: the 38 dialogs give the counts, fixes, waypoints and water
   GLIDEHELM_NEEDS_DATA(folder);
   // Where the script of expected.csv and this reader differ, and why. Each was looked at byte by byte.
   const std::map<std::pair<std::string, std::string>, std::string> explained{
-      // The second dockserver block stands between `   sensor:m_leakdetect_voltage` and `_forward(volts)=…`, with a line
-      // end of its own on either side. The script cuts the block out and leaves a line end, so it sees no sensor line;
-      // here the halves are joined to a line whose every field has the firmware's width (slocum.md R3).
+      // The second dockserver block stands between `   sensor:m_leakdetect_voltage` and `_forward(volts)=…`, with a
+      // line end of its own on either side. The script cuts the block out and leaves a line end, so it sees no sensor
+      // line; here the halves are joined to a line whose every field has the firmware's width (slocum.md R3).
       {{"koskelo_20231109T111452_network_net_0.log", "sensor_lines"}, "27"},
   };
   std::size_t logs = 0, distinct = 0, differences = 0;

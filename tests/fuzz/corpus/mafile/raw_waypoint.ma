@@ -3,6 +3,6 @@ behavior_name=goto_list
 b_arg: list_stop_when([31m) 7
 <end:b_arg>
 <start:waypoints>
-[31m 3328.5
+[31m 3117.5
 -118.5 33.4
 <end:waypoints>

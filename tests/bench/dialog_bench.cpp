@@ -29,7 +29,7 @@ std::string surfacing() {
   for (int i = 0; i < 20; ++i) {
     text += " 13045    SCI:           sci_seaowl_chl_scaled(ug/l)\r\n";
     text += "Total Bytes sent/received: 1024\n";
-    text += "   m_tot_num_inflections(nodim) 5031.000000\r\n";
+    text += "   m_tot_num_inflections(nodim) 4208.000000\r\n";
   }
   return text + "   RESUMING MISSION\r\n";
 }

@@ -249,6 +249,10 @@ class ListMaker {
                                       most_ - list_.points.size() - 1, longest))
         list_.points.push_back({p, WaypointRole::aim});
     }
+    // A point whose ring holds the goal would be hit together with it: the goal says the same.
+    while (!list_.points.empty() &&
+           distance(list_.points.back().at, flight_.goal.centre).si() < 1.1 * list_.radius.si())
+      list_.points.pop_back();
     list_.points.push_back({flight_.goal.centre, WaypointRole::goal});
     return list_;
   }

@@ -29,7 +29,7 @@ int fly(glidehelm::config::Configuration configuration, glidehelm::world::RealWo
   world::SimulatedClock clock{net, real.world().clock, *configuration.daemon.simulated_clock,
                               [&](std::string_view reason) {
                                 if (voice != nullptr)
-                                  voice->info("", "the simulator's clock is gone: " + std::string{reason});
+                                  voice->info("", "stopping, the simulator ended: " + std::string{reason});
                                 net.stop();
                               }};
   daemon::Log log{sink, clock};

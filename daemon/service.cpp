@@ -90,7 +90,7 @@ bool Service::start() {
     sessions_.push_back(std::move(session));
   }
   journal_->forget_past();
-  log_.info("", fmt::format("ready: {} gliders, {} missions, epoch {} of the journal", d.gliders.size(),
+  log_.info("", fmt::format("ready: gliders {}, missions {}, epoch {} of the journal", d.gliders.size(),
                             configuration_.missions.size(), journal_->epoch()));
   manager_.ready(fmt::format("{} gliders", d.gliders.size()));
   tend();

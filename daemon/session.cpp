@@ -152,9 +152,8 @@ void Session::closed(std::string_view reason) {
   desk_.world.clock.cancel(idle_timer_);
   const auto& counts = reader_.counts();
   desk_.log.info(entry_.name, fmt::format("line: closed, {}{}", reason,
-                                          counts.damaged_lines + counts.discarded_bytes > 0
-                                              ? fmt::format(" ({} damaged lines, {} bytes discarded)",
-                                                            counts.damaged_lines, counts.discarded_bytes)
+                                          counts.damaged_lines > 0
+                                              ? fmt::format(" ({} damaged lines were not used)", counts.damaged_lines)
                                               : ""));
 }
 

@@ -536,7 +536,8 @@ void Pilot::emit_if_due() {
   }
   stage_ = Stage::emitting;
   say(Level::info, "plan",
-      fmt::format("plan by {}: {}, next surfacing expected at {}, {:.0f} s left in the window", plan.method, arrival,
+      fmt::format("plan by {}: {}, next surfacing expected {} at {}, {:.0f} s left in the window", plan.method, arrival,
+                  clock_text(after(last_->fix_taken, mission_->surface + mission_->stint)),
                   place(best->candidate.promise.next_surfacing), Seconds{deadline_ - now_.tick}.count()));
   out_.push_back(Emit{*best->file, key_, fmt::format("{}#{}", key_, request_), deadline_, replacing_});
 }

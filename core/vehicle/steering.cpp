@@ -85,6 +85,9 @@ bool follows(GeoPoint before, GeoPoint aim, double longest, Metres radius) {
   return leg <= longest && leg >= 1.1 * radius.si();
 }
 
+/// True for a point whose ring holds the goal: it would be hit together with it, and the goal says the same.
+bool stands_for(GeoPoint goal, GeoPoint point, Metres radius) { return distance(point, goal).si() < 1.1 * radius.si(); }
+
 /// Points of a plan's way that the straight way from `from` to the goal needs around land and areas: from each point the
 /// farthest of `later` surfacings that is in sight and within `longest` metres, until the goal is. At most `at_most`
 /// points.
@@ -249,9 +252,7 @@ class ListMaker {
                                       most_ - list_.points.size() - 1, longest))
         list_.points.push_back({p, WaypointRole::aim});
     }
-    // A point whose ring holds the goal would be hit together with it: the goal says the same.
-    while (!list_.points.empty() &&
-           distance(list_.points.back().at, flight_.goal.centre).si() < 1.1 * list_.radius.si())
+    while (!list_.points.empty() && stands_for(flight_.goal.centre, list_.points.back().at, list_.radius))
       list_.points.pop_back();
     list_.points.push_back({flight_.goal.centre, WaypointRole::goal});
     return list_;
@@ -461,7 +462,10 @@ class Relay {
     s.radius = list_radius({leg}, 0, {});
     const auto aim = aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius);
     s.points = {aim.at};
-    if (!aim.ends_list) {
+    if (!aim.ends_list && stands_for(flight_.goal.centre, aim.at, s.radius)) {
+      s.points = {flight_.goal.centre};
+      s.to_goal = true;
+    } else if (!aim.ends_list) {
       if (const auto second = second_point(k, aim.at, ideal, s.radius)) s.points.push_back(*second);
       s.points.push_back(flight_.goal.centre);
     }

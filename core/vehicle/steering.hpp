@@ -71,6 +71,7 @@ struct ListOptions {
 ///  - No leg is longer than 1.09·(Û + largest current believed or drifted in so far)·t_s, so that the written file keeps product.md
 ///    7.1, and no aim point lies inside the ring of the one before: where the believed current turns so much from stint to
 ///    stint, the goal follows at once. When fix → w_1 would be too long the radius gives way, down to 100 m.
+///  - A point whose ring would hold the goal is left out: the goal says the same.
 ///  - It ends with the first aim that ends it (`Aim::ends_list`).
 ///  - The goal is left out, and then the last points, as far as the list alone would else run aground or out of the
 ///    water with data (flown by `fly_list`): a list that goes round and round over its own points is safe for a lost call, a last

@@ -246,7 +246,8 @@ TEST_CASE("a human's file that appears at any instant stays, whatever fails besi
       for (auto at = when; at <= last + 4; ++at) {
         for (const std::uint64_t power : {0, 1, 2, 3})
           tally.add({before, Who::human, when, {Fault::What::power_cut, at, 0, false}, power, {}, 1});
-        tally.add({before, Who::human, when, {Fault::What::error, at, EIO, false}, 1, {}, 1});
+        for (const std::uint64_t power : {1, 2, 3})
+          tally.add({before, Who::human, when, {Fault::What::error, at, EIO, false}, power, {}, 1});
         tally.add({before, Who::human, when, {Fault::What::error, at, EIO, true}, 3, {}, 1});
       }
     }
@@ -277,7 +278,7 @@ TEST_CASE("recovery that is itself killed at any operation ends where it would h
   for (const auto before : {Before::nothing, Before::ours}) {
     const auto first = operations_of_start(before), last = operations_of(before);
     for (auto at = first + 1; at <= last; ++at)
-      for (const std::uint64_t power : {1, 2, 3}) {
+      for (const std::uint64_t power : {1, 3}) {
         Observer trial{{before,
                         Who::nobody,
                         0,
@@ -295,7 +296,7 @@ TEST_CASE("recovery that is itself killed at any operation ends where it would h
                      power,
                      {Fault::What::error, then, EIO, false},
                      1});
-          for (const std::uint64_t power_again : {0, 1, 4})
+          for (const std::uint64_t power_again : {0, 4})
             tally.add({before,
                        Who::nobody,
                        0,

@@ -464,7 +464,6 @@ class Relay {
     s.points = {aim.at};
     if (!aim.ends_list && stands_for(flight_.goal.centre, aim.at, s.radius)) {
       s.points = {flight_.goal.centre};
-      s.to_goal = true;
     } else if (!aim.ends_list) {
       if (const auto second = second_point(k, aim.at, ideal, s.radius)) s.points.push_back(*second);
       s.points.push_back(flight_.goal.centre);

@@ -142,7 +142,7 @@ TEST_CASE("without a file the exit code is 2") {
   CHECK_FALSE(r.err.empty());
 }
 
-TEST_CASE("--effective prints every value with its origin") {
+TEST_CASE("check --effective prints every value with its origin") {
   const auto r = check({{"m.yaml", mission("leg-1", "sim01", "list: {slot: 11}\n")}}, options({"m.yaml"}, true));
   CHECK(r.code == 0);
   CHECK(r.out.find("  slot: 11 ") != std::string::npos);
@@ -152,7 +152,7 @@ TEST_CASE("--effective prints every value with its origin") {
   CHECK(again.code == 0);
 }
 
-TEST_CASE("--json has the contract's form, with places and keys") {
+TEST_CASE("check --json has the contract's form, with places and keys") {
   const auto r = check(
       {{"a.yaml", mission("leg-1", "sim01", "planning: {headigns: 18}\n")}, {"b.yaml", mission("leg-2", "sim01")}},
       options({"a.yaml", "b.yaml", "c.yaml"}, false, true));
@@ -174,7 +174,7 @@ TEST_CASE("--json has the contract's form, with places and keys") {
   CHECK(document["files"][2]["problems"][0]["line"] == 0);
 }
 
-TEST_CASE("--json --effective adds the values in force of right files") {
+TEST_CASE("check --json --effective adds the values in force of right files") {
   const auto document =
       json::parse(check({{"m.yaml", mission("leg-1", "sim01")}}, options({"m.yaml"}, true, true)).out);
   CHECK(document["files"][0]["effective"].get<std::string>().find("name: leg-1") != std::string::npos);

@@ -146,7 +146,8 @@ TEST_CASE("where the ocean is the forecast every surfacing is within 200 m of th
   }
 }
 
-TEST_CASE("without a file for five surfacings at most 1 % of the dives head more than 90 degrees from the plan") {
+TEST_CASE("without a file for five surfacings at most 1 % of the dives head more than 90 degrees from the plan",
+          "[.][campaign]") {
   for (const int correction : {0, 1}) {
     int dives = 0, backwards = 0, seas = 0;
     double progress_kept = 0, progress_lost = 0;

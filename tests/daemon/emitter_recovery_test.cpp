@@ -188,7 +188,7 @@ struct Tally {
                 << c.in_recovery.at << " power_again=" << c.power_again << ": " << observer.what_went_wrong << "\n";
   }
   void print(const std::string& what) const {
-    std::cout << what << ": points=" << points << " violations=" << violations << "\n";
+    std::cout << what << ": points=" << points << " violations=" << violations << std::endl;
   }
 };
 

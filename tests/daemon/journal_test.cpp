@@ -486,7 +486,7 @@ TEST_CASE("power cut at any operation: what was acknowledged survives, the rest 
         ++violations;
       ++points;
     }
-  std::cout << "journal power cuts: points=" << points << " violations=" << violations << "\n";
+  std::cout << "journal power cuts: points=" << points << " violations=" << violations << std::endl;
   CHECK(points >= 500);
   CHECK(violations == 0);
 }
@@ -520,7 +520,7 @@ TEST_CASE(
                                          : kept == first.accepted;
           if (!right) ++violations;
         }
-  std::cout << "journal faults: points=" << points << " violations=" << violations << "\n";
+  std::cout << "journal faults: points=" << points << " violations=" << violations << std::endl;
   CHECK(points >= 1000);
   CHECK(violations == 0);
 }

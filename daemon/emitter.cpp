@@ -36,20 +36,6 @@ bool same_folder(const world::FileStat& a, const world::FileStat& b) {
   return a.device == b.device && a.inode == b.inode;
 }
 
-class StandingClock final : public world::Clock {
- public:
-  StandingClock(Instant utc, Tick tick) : utc_{utc}, tick_{tick} {}
-  [[nodiscard]] Instant utc() const override { return utc_; }
-  [[nodiscard]] Tick tick() const override { return tick_; }
-  world::TimerId call_at(Tick, std::function<void()>) override { return 0; }
-  void cancel(world::TimerId) override {}
-  [[nodiscard]] bool simulated() const override { return false; }
-
- private:
-  Instant utc_;
-  Tick tick_;
-};
-
 /// Bytes that are no UTF-8 must not stop a record: they are replaced, the hash beside them is exact.
 std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
@@ -213,11 +199,6 @@ std::optional<std::string> Emitter::objection(const EmissionOrder&) {
       stage_stat->mode != stage_stat_.mode)
     return "the staging folder was replaced or its rights changed since the start";
   return std::nullopt;
-}
-
-Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,
-                       Journal& journal, Instant utc, Tick now) {
-  return emit(file, staged, order, journal, StandingClock{utc, now});
 }
 
 Emission Emitter::emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,

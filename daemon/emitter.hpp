@@ -74,9 +74,6 @@ class Emitter {
   /// durable: a slow disk must not make a late file visible.
   Emission emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,
                 Journal& journal, const world::Clock& clock);
-  /// The same with a clock that stands.
-  Emission emit(const safety::VerifiedFile& file, const std::string& staged, const EmissionOrder& order,
-                Journal& journal, Instant utc, Tick now);
 
   /// 6.2: settles what the journal began and did not end, deletes staged files of older epochs, and learns from the
   /// journal which file is ours. `past` is everything up to now. Idempotent: may be killed and run again at any point.

@@ -186,6 +186,26 @@ Expected<Done, JournalError> Journal::read_back() {
   return Done{};
 }
 
+Expected<std::vector<JournalRecord>, JournalError> Journal::all() {
+  std::vector<JournalRecord> records;
+  for (std::uint64_t number = 1; number <= segment_; ++number) {
+    const auto name = segment_name(number);
+    const auto content = folder_.read(name, kSegment + kMostPayload + kMostOvershoot);
+    if (!content) return unexpected(failed(content.error()));
+    const std::string_view bytes{*content};
+    for (std::size_t at = kSegmentHeader; at < bytes.size();) {
+      auto parsed = parse_record(bytes.substr(at));
+      if (!parsed || parsed->record.sequence != records.size() + 1)
+        return unexpected(JournalError{JournalError::What::corrupt,
+                                       name + " at byte " + std::to_string(at) + ": a record of this run is damaged",
+                                       false});
+      at += parsed->size;
+      records.push_back(std::move(parsed->record));
+    }
+  }
+  return records;
+}
+
 Expected<Done, JournalError> Journal::read_segment(const std::string& name, bool last) {
   const auto content = folder_.read(name, kSegment + kMostPayload + kMostOvershoot);
   if (!content) return unexpected(failed(content.error()));

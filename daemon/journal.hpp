@@ -103,6 +103,8 @@ class Journal {
 
   /// Everything that was there at the opening, the new epoch record not included.
   [[nodiscard]] const std::vector<JournalRecord>& past() const { return past_; }
+  /// Everything up to now, read again from the disk: for a glider that a reload brings in.
+  [[nodiscard]] Expected<std::vector<JournalRecord>, JournalError> all();
   /// Frees what `past` holds once it was replayed.
   void forget_past() { past_ = {}; }
   [[nodiscard]] std::uint64_t epoch() const { return epoch_; }

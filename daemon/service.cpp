@@ -10,6 +10,8 @@ namespace glidehelm::daemon {
 
 namespace {
 
+constexpr int kDefaultSlot = 10;
+constexpr int kExitNotDurable = 70;
 constexpr std::size_t kLargestConfiguration = std::size_t{2} << 20;
 constexpr Seconds kTend{60};  // how often forecast files are looked for
 
@@ -54,6 +56,7 @@ void Service::stop(int code, const std::string& why) {
   stopping_ = true;
   exit_code_ = code;
   if (!why.empty()) log_.info("", "stopping: " + why);
+  if (code == 0 && journal_) static_cast<void>(journal_->sync());  // what fails here is read back at the next start
   world_.net.stop();
 }
 
@@ -70,7 +73,7 @@ bool Service::start() {
     log_.alert("", "state_dir: " + made.error().message());
     return false;
   }
-  auto journal = Journal::open(*state_, world_.clock.utc(), world_.clock.tick());
+  auto journal = Journal::open(*state_, world_.clock.utc(), world_.clock.tick(), world_.clock.boot());
   if (!journal) {
     log_.fact(mission::Level::page, "", "the journal cannot be used: " + journal.error().message);
     return false;
@@ -79,15 +82,12 @@ bool Service::start() {
   if (!journal_->note().empty()) log_.warn("", journal_->note());
   worker_ = std::make_unique<PlanningWorker>();
   for (const auto& entry : d.gliders) {
-    auto session = session_for(entry);
-    if (!session) return false;
-    session->recover(journal_->past());
-    session->fly(chain_for(entry.name), "start");
-    if (auto started = session->start(); !started) {
-      log_.alert(entry.name, started.error());
+    auto session = make_session(entry, configuration_);
+    if (!session) {
+      log_.alert(entry.name, session.error());
       return false;
     }
-    sessions_.push_back(std::move(session));
+    sessions_.push_back(std::move(session).value());
   }
   journal_->forget_past();
   log_.info("", fmt::format("ready: gliders {}, missions {}, epoch {} of the journal", d.gliders.size(),
@@ -98,26 +98,29 @@ bool Service::start() {
   return true;
 }
 
-std::vector<mission::MissionText> Service::chain_for(const std::string& glider) const {
+std::vector<mission::MissionText> Service::chain_for(const std::string& glider,
+                                                     const config::Configuration& configuration) const {
   std::vector<mission::MissionText> chain;
   const config::LoadedMission* next = nullptr;
-  for (const auto& m : configuration_.missions)
+  for (const auto& m : configuration.missions)
     if (m.mission.glider == glider && m.follows.empty()) next = &m;
-  while (next != nullptr && chain.size() < configuration_.missions.size()) {
+  while (next != nullptr && chain.size() < configuration.missions.size()) {
     // The effective YAML has every default and path written out, so a replay reads the same mission whatever changes later.
     const auto read = sources_of(world_.files);
     const auto full = config::read_mission_file(next->text, next->file, read.read);
     chain.push_back({next->mission, full ? full->effective : next->text, next->sha256.hex()});
     const auto& name = next->mission.name;
     const auto follower =
-        std::find_if(configuration_.missions.begin(), configuration_.missions.end(),
+        std::find_if(configuration.missions.begin(), configuration.missions.end(),
                      [&](const config::LoadedMission& m) { return m.mission.glider == glider && m.follows == name; });
-    next = follower == configuration_.missions.end() ? nullptr : &*follower;
+    next = follower == configuration.missions.end() ? nullptr : &*follower;
   }
   return chain;
 }
 
-std::unique_ptr<Session> Service::session_for(const config::GliderEntry& entry) {
+/// A session with its folder open, its past replayed and its line started.
+Expected<std::unique_ptr<Session>, std::string> Service::make_session(const config::GliderEntry& entry,
+                                                                      const config::Configuration& configuration) {
   Desk desk{world_,
             log_,
             *journal_,
@@ -130,16 +133,19 @@ std::unique_ptr<Session> Service::session_for(const config::GliderEntry& entry) 
             [this](const std::string& why) {
               log_.fact(mission::Level::page, "",
                         why + ": the process ends at once and reads the disk again when it is restarted");
-              stop(70, "");
+              stop(kExitNotDurable, "");
             }};
   auto session = std::make_unique<Session>(entry, std::move(desk));
-  const auto chain = chain_for(entry.name);
-  if (auto opened = session->open(chain.empty() ? 10 : chain.front().mission.slot); !opened) {
-    log_.alert(entry.name, opened.error());
-    return nullptr;
-  }
+  const auto chain = chain_for(entry.name, configuration);
+  if (auto opened = session->open(chain.empty() ? kDefaultSlot : chain.front().mission.slot); !opened)
+    return unexpected(opened.error());
   if (chain.empty())
     log_.warn(entry.name, "no mission names this glider: its surfacings are recorded, nothing is planned");
+  auto past = journal_->all();
+  if (!past) return unexpected(past.error().message);
+  session->recover(*past);
+  session->fly(chain, "start");
+  if (auto started = session->start(); !started) return unexpected(started.error());
   return session;
 }
 
@@ -155,47 +161,48 @@ void Service::reload() {
     log_.alert("", "reload refused, nothing changed: clock and state_dir can only change with a restart");
   } else if (change_gliders(*next)) {
     configuration_ = std::move(next).value();
-    for (const auto& session : sessions_) session->fly(chain_for(session->entry().name), "reload");
+    for (const auto& session : sessions_) session->fly(chain_for(session->entry().name, configuration_), "reload");
     log_.info("", "reloaded: in force at each glider's next surfacing");
   }
   manager_.ready(fmt::format("{} gliders", sessions_.size()));
   settled();
 }
 
-/// Opens what is new before it closes what is gone, so that a port in use leaves everything as it was.
+/// Opens everything that is new before anything that is gone is closed: one failure and all stays as it is.
 bool Service::change_gliders(const config::Configuration& next) {
-  const auto previous = configuration_;
-  configuration_ = next;
-  std::vector<std::unique_ptr<Session>> kept, old = std::move(sessions_);
-  sessions_.clear();
-  const auto same = [&](const config::GliderEntry& entry) {
-    return std::find_if(old.begin(), old.end(),
-                        [&](const std::unique_ptr<Session>& s) { return s && s->entry() == entry; });
+  const auto session_of = [this](const std::string& name) {
+    return std::find_if(sessions_.begin(), sessions_.end(),
+                        [&](const std::unique_ptr<Session>& s) { return s->entry().name == name; });
   };
+  std::vector<std::unique_ptr<Session>> added;
+  std::vector<std::pair<Session*, Session::Change>> changed;
   for (const auto& entry : next.daemon.gliders) {
-    const auto found = same(entry);
-    if (found != old.end()) {
-      kept.push_back(std::move(*found));
-      continue;
+    const auto session = session_of(entry.name);
+    std::string problem;
+    if (session == sessions_.end()) {
+      auto made = make_session(entry, next);
+      if (made)
+        added.push_back(std::move(made).value());
+      else
+        problem = made.error();
+    } else if ((*session)->entry() != entry) {
+      auto change = (*session)->prepare(entry);
+      if (change)
+        changed.emplace_back(session->get(), std::move(change).value());
+      else
+        problem = change.error();
     }
-    // An entry that only changed holds its folder's lock and port: it is closed first and opened anew.
-    const auto changed = std::find_if(
-        old.begin(), old.end(), [&](const std::unique_ptr<Session>& s) { return s && s->entry().name == entry.name; });
-    if (changed != old.end()) changed->reset();
-    auto session = session_for(entry);
-    auto started =
-        session ? session->start() : Expected<Done, std::string>{unexpected(std::string{"its folder cannot be used"})};
-    if (!started) {
-      log_.alert(entry.name, "reload refused: " + started.error());
-      configuration_ = previous;
-      for (auto& s : old)
-        if (s) kept.push_back(std::move(s));
-      sessions_ = std::move(kept);
+    if (!problem.empty()) {
+      log_.alert(entry.name, "reload refused, nothing changed: " + problem);
       return false;
     }
-    kept.push_back(std::move(session));
   }
-  sessions_ = std::move(kept);
+  for (auto& [session, change] : changed) session->apply(std::move(change));
+  std::erase_if(sessions_, [&](const std::unique_ptr<Session>& s) {
+    return std::none_of(next.daemon.gliders.begin(), next.daemon.gliders.end(),
+                        [&](const config::GliderEntry& entry) { return entry.name == s->entry().name; });
+  });
+  for (auto& session : added) sessions_.push_back(std::move(session));
   return true;
 }
 

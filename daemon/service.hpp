@@ -32,8 +32,10 @@ class Service {
 
  private:
   bool start();
-  [[nodiscard]] std::vector<mission::MissionText> chain_for(const std::string& glider) const;
-  [[nodiscard]] std::unique_ptr<Session> session_for(const config::GliderEntry& entry);
+  [[nodiscard]] std::vector<mission::MissionText> chain_for(const std::string& glider,
+                                                            const config::Configuration& configuration) const;
+  [[nodiscard]] Expected<std::unique_ptr<Session>, std::string> make_session(
+      const config::GliderEntry& entry, const config::Configuration& configuration);
   void reload();
   [[nodiscard]] bool change_gliders(const config::Configuration& next);
   void stop(int code, const std::string& why);

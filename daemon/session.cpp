@@ -16,6 +16,7 @@ namespace glidehelm::daemon {
 
 namespace {
 
+constexpr int kDefaultSlot = 10;
 constexpr Seconds kIdle{2};
 constexpr Seconds kVerifierDeadline{10};
 // A sanitizer reserves terabytes of address space before main: under a limit its programs cannot start.
@@ -95,18 +96,47 @@ Expected<Done, std::string> Session::open(int slot) {
   return Done{};
 }
 
-Expected<Done, std::string> Session::start() {
-  line_ = std::make_unique<Line>(
-      desk_.world, entry_.line,
+std::unique_ptr<Line> Session::line_of(const config::GliderEntry& entry) {
+  return std::make_unique<Line>(
+      desk_.world, entry.line,
       Line::Handlers{[this](std::uint64_t connection, std::string_view peer, bool replaced) {
                        opened(connection, peer, replaced);
                      },
                      [this](std::uint64_t, std::string_view bytes) { received(bytes); },
                      [this](std::uint64_t, std::string_view reason) { closed(reason); },
                      [this](std::string_view problem) { desk_.log.warn(entry_.name, problem); }});
+}
+
+Expected<Done, std::string> Session::start() {
+  line_ = line_of(entry_);
   const auto started = line_->start();
   if (!started) return unexpected("line of " + entry_.name + ": " + started.error().message());
   return Done{};
+}
+
+Expected<Session::Change, std::string> Session::prepare(const config::GliderEntry& entry) {
+  Change change{entry, nullptr, nullptr};
+  if (entry.to_glider != entry_.to_glider) {
+    const int slot = pilot_.mission() ? pilot_.mission()->slot : kDefaultSlot;
+    auto emitter = Emitter::open(desk_.world.files, entry.to_glider, slot, desk_.world.clock.simulated());
+    if (!emitter) return unexpected(emitter.error());
+    change.emitter = std::move(emitter).value();
+  }
+  if (entry.line != entry_.line) {
+    change.line = line_of(entry);
+    const auto started = change.line->start();
+    if (!started) return unexpected("line of " + entry.name + ": " + started.error().message());
+  }
+  return change;
+}
+
+void Session::apply(Change change) {
+  if (change.line) {
+    closed("the line moves");
+    line_ = std::move(change.line);
+  }
+  if (change.emitter) emitter_ = std::move(change.emitter);
+  entry_ = std::move(change.entry);
 }
 
 bool Session::quiet() const {
@@ -119,6 +149,7 @@ void Session::opened(std::uint64_t, std::string_view peer, bool replaced) {
   reader_ = {};
   name_.clear();
   connected_ = true;
+  emitter_->set_transfer_open(false);  // a transfer does not outlive its call
   desk_.log.info(entry_.name,
                  fmt::format("line: {} connected{}", peer, replaced ? ", replacing the older connection" : ""));
 }
@@ -173,7 +204,7 @@ void Session::hear_name(const std::string& name) {
 }
 
 void Session::hear_block(const protocol::SurfaceBlock& block) {
-  if (!block.gps) return;
+  if (!block.gps && !block.gps_damaged) return;
   auto surfacing = protocol::accept_fix(block, name_);
   if (!surfacing) {
     feed(mission::FixRefused{surfacing.error()});
@@ -348,6 +379,10 @@ verify::VerifyRequest Session::verify_request(const mission::Verify& e) const {
 
 void Session::carry_out(const mission::Verify& e) {
   const auto staged = emitter_->stage(e.dossier.file_bytes, ++staged_count_);
+  if (!staged && staged.error().failed_sync()) {
+    desk_.fatal(staged.error().message());
+    return;
+  }
   if (!staged) {
     feed(mission::Judged{e.request, e.number, std::nullopt, staged.error().message()});
     return;
@@ -400,7 +435,7 @@ void Session::carry_out(const mission::Emit& e) {
   Emission emission{Emission::Outcome::aborted, "the proven file is not staged any more", false};
   if (staged != staged_.end())
     emission = emitter_->emit(e.file, staged->second, {entry_.name, e.surfacing, e.plan_id, e.deadline, e.replaces},
-                              desk_.journal, clock.utc(), clock.tick());
+                              desk_.journal, clock);
   if (emission.fatal) {
     desk_.fatal(emission.detail);
     return;

@@ -44,6 +44,14 @@ class Session {
   void recover(const std::vector<JournalRecord>& past);
   /// Opens the line.
   [[nodiscard]] Expected<Done, std::string> start();
+  /// What another entry of the same glider needs, opened and not yet in force: a reload is all or nothing.
+  struct Change {
+    config::GliderEntry entry;
+    std::unique_ptr<Emitter> emitter;  ///< null: the folder stays
+    std::unique_ptr<Line> line;        ///< null: the line stays
+  };
+  [[nodiscard]] Expected<Change, std::string> prepare(const config::GliderEntry& entry);
+  void apply(Change change);
   /// The missions in force, first the one that begins.
   void fly(std::vector<mission::MissionText> chain, const std::string& by);
   /// Looks for new forecast files.
@@ -56,6 +64,7 @@ class Session {
 
  private:
   // the line
+  [[nodiscard]] std::unique_ptr<Line> line_of(const config::GliderEntry& entry);
   void opened(std::uint64_t connection, std::string_view peer, bool replaced);
   void received(std::string_view bytes);
   void closed(std::string_view reason);

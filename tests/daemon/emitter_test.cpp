@@ -200,8 +200,8 @@ TEST_CASE("an emission after its deadline writes nothing at all") {
   Dock dock;
   REQUIRE(dock.start().empty());
   const auto staged = dock.emitter->stage("list 1", 1).value();
-  const auto emission = dock.emitter->emit(Dock::proven("list 1"), staged, dock.order("a", Seconds{0}), *dock.journal,
-                                           dock.clock.utc(), dock.clock.tick());
+  const auto emission =
+      dock.emitter->emit(Dock::proven("list 1"), staged, dock.order("a", Seconds{0}), *dock.journal, dock.clock);
   CHECK(emission.outcome == Outcome::late);
   CHECK(types(journalled(dock)).empty());
 }

@@ -97,6 +97,20 @@ TEST_CASE("what was appended is read back, with both clocks, boot and type") {
   CHECK((*journal)->past().empty());
 }
 
+TEST_CASE("everything up to now can be read again from the disk, over segments") {
+  Disk disk;
+  auto journal = disk.open();
+  REQUIRE(journal);
+  for (int i = 1; i <= 40; ++i) REQUIRE((*journal)->append(RecordType::surfacing, payload(i), kUtc, kTick));
+  REQUIRE(disk.files.get("/state/journal-000002.log"));
+  const auto all = (*journal)->all();
+  REQUIRE(all);
+  REQUIRE(all->size() == 41);
+  for (std::size_t i = 1; i <= 40; ++i)
+    CHECK((*all)[i] ==
+          JournalRecord{i + 1, 1, RecordType::surfacing, kUtc, kTick, kBoot, payload(static_cast<int>(i))});
+}
+
 TEST_CASE("types have stable numbers and names of their own") {
   const std::vector<std::pair<RecordType, int>> on_disk{
       {RecordType::epoch, 1},      {RecordType::event, 2},     {RecordType::surfacing, 10}, {RecordType::refusal, 11},

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <filesystem>
 
 #include "tests/system/processes/sea.hpp"
 
@@ -103,4 +104,39 @@ TEST_CASE(
     CAPTURE(i, before, files[static_cast<std::size_t>(i)]);
     CHECK(leads_to(files[static_cast<std::size_t>(i)], i < before ? kFirst : kSecond));
   }
+}
+
+TEST_CASE("SIGHUP brings a glider in and lets one go, all or nothing") {
+  HeldFlight flight;
+  auto& sea = flight.sea;
+  flight.fly_until(1);
+  const auto one = sea.folder.read("glidehelm.yaml");
+  // The second glider's folder is made as glidersim makes one: with the marker beside to-glider.
+  std::filesystem::create_directories(sea.path("run/sim02/to-glider"));
+  sea.folder.write("run/sim02/.glidersim", "");
+  const auto with_second = [&](int port, const std::string& folder) {
+    return one + "  - {name: sim02, line: {listen: \"127.0.0.1:" + std::to_string(port) +
+           "\"}, to_glider: " + sea.path(folder) + "}\n";
+  };
+
+  sea.folder.write("glidehelm.yaml", with_second(free_port(), "run/nowhere/to-glider"));
+  const auto refused = flight.reload();
+  CAPTURE(refused);
+  CHECK(lines_with(refused, "ALERT sim02 +reload refused, nothing changed: to_glider .*nowhere").size() == 1);
+  CHECK(lines_with(refused, "info  - +reloaded").empty());
+
+  sea.folder.write("glidehelm.yaml", with_second(free_port(), "run/sim02/to-glider"));
+  const auto added = flight.reload();
+  CAPTURE(added);
+  CHECK(lines_with(added, "note  sim02 +no mission names this glider").size() == 1);
+  CHECK(lines_with(added, "info  - +reloaded").size() == 1);
+
+  sea.folder.write("glidehelm.yaml", one);
+  CHECK(lines_with(flight.reload(), "info  - +reloaded").size() == 1);
+  // Gone means gone: its folder's lock is free for another process, here the same one again.
+  sea.folder.write("glidehelm.yaml", with_second(free_port(), "run/sim02/to-glider"));
+  CHECK(lines_with(flight.reload(), "info  - +reloaded").size() == 1);
+
+  flight.fly_to_the_end();
+  CHECK(sea.taken().size() == sea.surfacings().size());
 }

@@ -48,7 +48,7 @@ TEST_CASE("a fix of the connection block starts planning, the at-surface block l
 TEST_CASE("the same fix printed again, or after a call-back, never makes a second file") {
   PilotDesk desk;
   desk.surface_and_dive(28.5, -15.3, "0007.0003");
-  const auto& first = std::get<SurfacingHeard>(desk.events[1].what).surfacing;
+  const auto first = std::get<SurfacingHeard>(desk.events[1].what).surfacing;
   for (int later : {300, 600, 900}) {
     desk.wait(Seconds{300});
     desk.step(SurfacingHeard{PilotDesk::at_surface(printed_again(desk, first, later)), std::nullopt});
@@ -277,7 +277,7 @@ TEST_CASE("at the goal the mission that follows takes over at once") {
   desk.step(SurfacingHeard{desk.heard(29.16, -15.5), std::nullopt});
   CHECK(said(desk.effects.back(), "arrived"));
   CHECK_FALSE(desk.pilot.arrived());
-  const auto& request = desk.last<BeginPlanning>()[0].request;
+  const auto request = desk.last<BeginPlanning>()[0].request;
   CHECK(request.purpose == PlanningRequest::Purpose::goal);
   CHECK(std::get<planning::PointGoal>(request.problem.goal).at == onward.goal);
 }

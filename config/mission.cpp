@@ -106,8 +106,9 @@ Fields<Draft> planning_fields() {
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");
   f.number({"budget_s", "time after the fix at which the best plan so far goes out"}, &Draft::budget, 1, above(0, 900));
-  f.maybe_number({"horizon_h", "longest travel time looked at; `auto`: three times that through still water"},
-                 &Draft::horizon, kHour, above(0, 8784), "auto");
+  f.maybe_number(
+      {"horizon_h", "longest travel time looked at; `auto`: three times that through still water, at least 12 stints"},
+      &Draft::horizon, kHour, above(0, 8784), "auto");
   f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
   return f;
 }

@@ -63,10 +63,11 @@ mission::Candidate station(const mission::PlanningRequest& request, const planni
 
 double horizon_of(const mission::PlanningRequest& request) {
   const auto& p = request.problem;
-  const Seconds least = p.schedule.surfacing_time(1) + p.schedule.surface;
-  const Seconds wanted =
-      request.horizon_wanted.count() > 0 ? request.horizon_wanted : 3.0 * planning::still_water_time(p);
-  return p.start.fix_s + std::max(wanted, least).count();
+  if (request.horizon_wanted.count() > 0) {
+    const Seconds least = p.schedule.surfacing_time(1) + p.schedule.surface;
+    return p.start.fix_s + std::max(request.horizon_wanted, least).count();
+  }
+  return p.start.fix_s + planning::automatic_horizon(p).count();
 }
 
 mission::Candidate candidate_for(const planning::Plan& plan, const mission::PlanningRequest& request,

@@ -24,7 +24,7 @@ std::string answer(const mission::PlanningRequest& request, const OceanSource& o
 mission::Candidate candidate_for(const planning::Plan& plan, const mission::PlanningRequest& request,
                                  const planning::Problem& problem, const OceanSource& ocean, const chart::Chart& chart);
 
-/// The horizon of a request (epoch seconds): as wanted, else three times the still-water time, at least two stints.
+/// The horizon of a request (epoch seconds): as wanted, else automatic; at least two stints.
 double horizon_of(const mission::PlanningRequest& request);
 
 }  // namespace glidehelm::daemon

@@ -125,4 +125,8 @@ Seconds still_water_time(const Problem& problem) {
   return problem.schedule.travel_time(Seconds{way / problem.glider.horizontal_speed.si()});
 }
 
+Seconds automatic_horizon(const Problem& problem) {
+  return std::max(3.0 * still_water_time(problem), problem.schedule.surfacing_time(kLeastHorizonStints - 1));
+}
+
 }  // namespace glidehelm::planning

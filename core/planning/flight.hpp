@@ -26,8 +26,12 @@ Plan plan_from(std::string method, const vehicle::FlownList& flown, const Proble
 /// True when `a` is the better answer: arriving beats not arriving, then earlier, then nearer; a tie is not better.
 bool better_than(const Plan& a, const Plan& b);
 
-/// Still-water travel time of a problem, surface intervals included: (geodesic − radius)/U on the dive schedule. Three times
-/// this is the automatic horizon.
+/// Still-water travel time of a problem, surface intervals included: (geodesic − radius)/U on the dive schedule.
 Seconds still_water_time(const Problem& problem);
+
+/// How far ahead a plan looks where nobody says: three times the still-water time, and at least `kLeastHorizonStints`
+/// stints: near its goal a glider may have to wait for an eddy to pass, or go round it (docs/decisions/010).
+Seconds automatic_horizon(const Problem& problem);
+inline constexpr int kLeastHorizonStints = 12;
 
 }  // namespace glidehelm::planning

@@ -140,15 +140,15 @@ Steered steer_to_goal(const Flight& flight, const Waters& waters, const State& f
 
 /// On a heading that arrives when held: it is held until then, the goal comes next.
 Steered hold_until_goal(const Flight& flight, const Waters& waters, const State& from, double seconds, Heading wanted,
-                        double arrival_s, Current believed) {
+                        double arrival_s, Current believed, Metres drifted) {
   // The ring of the aim is crossed early_share before its time, and shall not be before the arrival.
   const double share = 1 - early_share(flight.glider.current_correction);
   const double held = std::min(seconds, (arrival_s - from.t_s + kHeldOn) / share);
-  const double leg = aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}).length;
+  const double leg = aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}, drifted).length;
   Steered s;
   // The goal is a point of this list: its ring must lie well inside the disc, or the glider turns before it is there.
   s.radius = std::min(list_radius({leg}, 0, {}), Metres{std::max(kSmallestGoalRing, 0.5 * flight.goal.radius.si())});
-  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius);
+  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius, drifted);
   s.points = {aim.at};
   if (!aim.ends_list) s.points.push_back(flight.goal.centre);
   s.flown = fly_points(flight, waters, from, seconds, s, believed);
@@ -163,12 +163,12 @@ bool arrives_before(const Steered& s, const Steered& other) {
 /// The steering of a stint that can come to the goal: straight at it or by holding the heading, whichever is there first;
 /// none when neither is there within the stint.
 std::optional<Steered> steer_home(const Flight& flight, const Waters& waters, const State& from, double seconds,
-                                  Heading wanted, const Motion& ideal, Current believed) {
+                                  Heading wanted, const Motion& ideal, Current believed, Metres drifted) {
   const double reach = (flight.glider.horizontal_speed + waters.ocean.dive.fastest()).si() * seconds;
   if (distance_near(from.lat, from.lon, flight.goal) > reach + flight.goal.radius.si()) return std::nullopt;
   auto straight = steer_to_goal(flight, waters, from, seconds, believed);
   if (ideal.arrival_s) {
-    auto held = hold_until_goal(flight, waters, from, seconds, wanted, *ideal.arrival_s, believed);
+    auto held = hold_until_goal(flight, waters, from, seconds, wanted, *ideal.arrival_s, believed, drifted);
     if (!arrives_before(straight, held) && held.flown.motion.arrival_s) return held;
   }
   return straight.flown.motion.arrival_s ? std::optional{std::move(straight)} : std::nullopt;
@@ -179,7 +179,7 @@ std::optional<Steered> steer_home(const Flight& flight, const Waters& waters, co
 double early_share(int current_correction) { return current_correction == 1 ? 0.01 : 0.05; }
 
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
-              Metres radius) {
+              Metres radius, Metres drifted) {
   const double u = glider.believed_speed.si();
   double east = u * wanted.east(), north = u * wanted.north();
   if (glider.current_correction == 1) {
@@ -190,7 +190,7 @@ Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Curren
   const bool against = wanted.east() * east + wanted.north() * north < 0;
   Aim aim;
   aim.length = (1 - early_share(glider.current_correction)) * speed * seconds + radius.si();
-  const double shortest = std::max(2 * radius.si(), kShortestLeg);
+  const double shortest = std::max(2 * radius.si(), kShortestLeg) + drifted.si();
   aim.ends_list = against || aim.length < shortest;
   aim.length = std::max(aim.length, shortest);
   auto direction = speed > 1e-9 ? Bearing::of(east, north) : Bearing{wanted.from_north()};
@@ -210,7 +210,8 @@ std::optional<model::WaypointList> arriving_list(const Stint& stint, const Fligh
   const double seconds = stint.surface_s - stint.dive_s;
   const auto believed = believed_in(flight, {}, 0);
   const auto ideal = hold(flight, waters, from, seconds, stint.heading);
-  const auto steered = steer_home(flight, waters, from, seconds, stint.heading, ideal, believed);
+  const auto steered =
+      steer_home(flight, waters, from, seconds, stint.heading, ideal, believed, distance(flight.fix, stint.dive));
   if (!steered) return std::nullopt;
   list.radius = options.radius.value_or(steered->radius);
   for (const auto& p : steered->points) list.points.push_back({p, model::WaypointRole::aim});
@@ -223,10 +224,6 @@ std::optional<model::WaypointList> arriving_list(const Stint& stint, const Fligh
 }  // namespace
 
 namespace {
-
-double speed_of_drift(GeoPoint from, GeoPoint to, Seconds time) {
-  return time.count() > 0 ? distance(from, to).si() / time.count() : 0.0;
-}
 
 /// Makes the list of a plan whose first stint does not arrive by steering home.
 class ListMaker {
@@ -264,9 +261,13 @@ class ListMaker {
   [[nodiscard]] Current believed(std::size_t k) const {
     return believed_in(flight_, k == 0 ? Current{} : stints_[k - 1].dac, static_cast<int>(k));
   }
+  /// Before the dive of stint k.
+  [[nodiscard]] Metres drifted(std::size_t k) const {
+    return distance(k == 0 ? flight_.fix : stints_[k - 1].surface, stints_[k].dive);
+  }
   [[nodiscard]] Aim aim_of(std::size_t k, Metres radius) const {
     const Stint& s = stints_[k];
-    return aim_point(s.dive, s.heading, flight_.glider, believed(k), s.surface_s - s.dive_s, radius);
+    return aim_point(s.dive, s.heading, flight_.glider, believed(k), s.surface_s - s.dive_s, radius, drifted(k));
   }
 
   void choose_radius() {
@@ -274,8 +275,7 @@ class ListMaker {
     for (std::size_t k = 0; k < stints_.size() && (k == 0 || !stints_[k].arrives) && k + 1 < most_; ++k) {
       if (k > 0 && !corrects_) break;
       legs_.push_back(aim_of(k, Metres{0}).length);
-      if (k + 1 < stints_.size())
-        largest_drift = std::max(largest_drift, distance(stints_[k].surface, stints_[k + 1].dive).si());
+      if (k + 1 < stints_.size()) largest_drift = std::max(largest_drift, drifted(k + 1).si());
     }
     list_.radius = list_radius(legs_, largest_drift, options_);
   }
@@ -283,8 +283,8 @@ class ListMaker {
   /// False when the last of them ends the list.
   bool add_aims() {
     for (std::size_t k = 0; k < legs_.size(); ++k) {
-      const double drift = k == 0 ? speed_of_drift(flight_.fix, stints_[0].dive, flight_.schedule.time_to_dive)
-                                  : speed_of_drift(stints_[k - 1].surface, stints_[k].dive, flight_.schedule.surface);
+      const Seconds surface = k == 0 ? flight_.schedule.time_to_dive : flight_.schedule.surface;
+      const double drift = surface.count() > 0 ? drifted(k).si() / surface.count() : 0.0;
       fastest_ = std::max({fastest_, believed(k).speed().si(), drift});
       const double longest = longest_leg(flight_, fastest_, stints_[k].surface_s - stints_[k].dive_s);
       if (k == 0 && !options_.radius) {
@@ -407,6 +407,7 @@ class Relay {
       const auto drifted = drift(now, flight_, waters_, k);
       closest_.note(drifted);
       drift_speed_ = drifted.mean.speed().si();
+      drifted_ = Metres{metres_between(now, drifted.end)};
       if (drifted.arrival_s && *drifted.arrival_s <= flight_.horizon_s) {
         flown_.arrival_s = drifted.arrival_s;
         if (!flown_.stints.empty()) flown_.stints.back().arrives = true;
@@ -433,7 +434,7 @@ class Relay {
       steered = steer_to_goal(flight_, waters_, from, seconds, believed);
     } else {
       const auto ideal = hold(flight_, waters_, from, seconds, *wanted);
-      steered = steer_home(flight_, waters_, from, seconds, *wanted, ideal, believed);
+      steered = steer_home(flight_, waters_, from, seconds, *wanted, ideal, believed, drifted_);
       if (!steered) steered = steer_on(k, from, seconds, *wanted, ideal, believed);
     }
     const Motion& motion = steered->flown.motion;
@@ -457,10 +458,10 @@ class Relay {
 
   /// Towards w_1 and then the second point of the list that this surfacing brings.
   Steered steer_on(int k, const State& from, double seconds, Heading wanted, const Motion& ideal, Current believed) {
-    const double leg = aim_point(from.at(), wanted, flight_.glider, believed, seconds, Metres{0}).length;
+    const double leg = aim_point(from.at(), wanted, flight_.glider, believed, seconds, Metres{0}, drifted_).length;
     Steered s;
     s.radius = list_radius({leg}, 0, {});
-    const auto aim = aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius);
+    const auto aim = aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius, drifted_);
     s.points = {aim.at};
     if (!aim.ends_list && stands_for(flight_.goal.centre, aim.at, s.radius)) {
       s.points = {flight_.goal.centre};
@@ -488,7 +489,8 @@ class Relay {
     const auto next = helm_(k + 1, dive.end.at(), dive.end.t_s);
     if (!next) return std::nullopt;
     const double seconds = flight_.schedule.stint_length(k + 1).count();
-    const auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius).at;
+    const Metres drifted{metres_between(ideal.end, dive.end)};
+    const auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius, drifted).at;
     const double fastest = std::max({believed_in(flight_, last_.mean, k).speed().si(), ideal.mean.speed().si(),
                                      drift_speed_, dive.mean.speed().si()});
     return follows(first, aim, longest_leg(flight_, fastest, seconds), radius) ? std::optional{aim} : std::nullopt;
@@ -502,6 +504,7 @@ class Relay {
   FlownList flown_;
   Motion last_;
   double drift_speed_{};  ///< of the drift before the stint at hand
+  Metres drifted_;        ///< in it
   bool needs_ground_points_{};
 };
 

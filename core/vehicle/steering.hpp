@@ -51,11 +51,11 @@ struct Aim {
   double length{};   ///< metres from the dive point
   bool ends_list{};  ///< never hit (believed current against h stronger than Û), or lengthened: nothing may follow
 };
-/// w for a heading wanted from `dive` for `seconds`. A leg shorter than max(2r, 500 m) is lengthened to that and ends the
-/// list; so does sign −1, for which the law holds h only towards a waypoint up-current. The believed current counts with
+/// w for a heading wanted from `dive` for `seconds`. A leg shorter than max(2r, 500 m), plus the metres `drifted` since the
+/// surfacing before so that it is as long for a glider that dives at once, is lengthened to that and ends the list; so does sign −1, for which the law holds h only towards a waypoint up-current. The believed current counts with
 /// correction 1 only. Where g is null the wanted heading serves as its direction.
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
-              Metres radius);
+              Metres radius, Metres drifted = Metres{0});
 
 struct ListOptions {
   int max_waypoints{8};          ///< at least 1

@@ -31,6 +31,15 @@ TEST_CASE("the still-water time is the way less the radius over the speed, on th
   CHECK(planning::still_water_time(p).count() == Approx(900));
 }
 
+TEST_CASE("the automatic horizon is three times the still-water time, and never less than twelve stints") {
+  const auto from = geo_point(28, -16);
+  auto p = test::problem_between(from, destination(from, Bearing{degrees(30)}, Metres{200e3}), 2000);
+  CHECK(planning::automatic_horizon(p) == 3.0 * planning::still_water_time(p));
+  p.goal = planning::PointGoal{destination(from, Bearing{degrees(30)}, Metres{4e3}), Metres{2000}};
+  // Twelve stints of 28800 s, the time to dive and eleven surface intervals of 900 s.
+  CHECK(planning::automatic_horizon(p).count() == Approx(12 * 28800 + 12 * 900));
+}
+
 TEST_CASE("an end in the water of field and chart has no complaint, also inside the margin to an area") {
   const auto still = test::still_water();
   const auto home = geo_point(28, -16);

@@ -105,6 +105,10 @@ TEST_CASE("a leg that would be too short is lengthened and ends the list") {
   CHECK(nearly_held.ends_list);  // 0.99·0.005·14400 + 300 = 371 m
   CHECK(nearly_held.length == Approx(600));
   CHECK(aim_point(dive, Heading{degrees(0)}, glider(1), current(0, -0.3), 14400, Metres{100}).length == Approx(500));
+  // A glider that dives before it has drifted 336 m starts outside the ring too.
+  const auto drifted = aim_point(dive, Heading{degrees(0)}, glider(1), current(0, -0.3), 14400, Metres{250}, Metres{336});
+  CHECK(drifted.ends_list);
+  CHECK(drifted.length == Approx(836));
 }
 
 TEST_CASE("with correction 1 a list is seven aim points and the goal, with correction 0 one and the goal") {

@@ -100,7 +100,7 @@ TEST_CASE("the tide turns with M2, and truth and forecast differ by the lag aske
   for (double s = 0; s < period; s += period / 16) CHECK(at(forecast, t + s).speed().si() <= 0.10 + 1e-9);
 }
 
-TEST_CASE("truth and forecast of one seed are alike and not equal; another seed is another sea") {
+TEST_CASE("truth and forecast of one seed are alike and not equal, another seed is another sea") {
   const CoastalField forecast{sea(), Variant::forecast}, truth{sea(), Variant::truth}, other{sea(9), Variant::forecast};
   double same = 0, power = 0, error = 0, foreign = 0;
   for (double x = -90e3; x < 90e3; x += 5e3)

@@ -17,7 +17,7 @@ TEST_CASE("azimuths run clockwise from north: east is the sine") {
   CHECK(Course::of(-1, 0).degrees() == Approx(270));
 }
 
-TEST_CASE("azimuths stay in [0, 360) whatever comes in") {
+TEST_CASE("azimuths stay below a full turn and never negative, whatever comes in") {
   for (double a = -1000; a <= 1000; a += 0.37) {
     const double d = Heading{degrees(a)}.degrees();
     CHECK(d >= 0);

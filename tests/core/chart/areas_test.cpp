@@ -79,7 +79,7 @@ TEST_CASE("the edges of an area are geodesics") {
   }
 }
 
-TEST_CASE("a random star is an area; with two corners swapped it crosses itself") {
+TEST_CASE("a random star is an area, with two corners swapped it crosses itself") {
   std::mt19937_64 random{4};
   for (int k = 0; k < 50; ++k) {
     auto points = star(-179.9, 50, 1, 12, random);

@@ -121,7 +121,7 @@ TEST_CASE("a refused fix is said once, however often it is printed") {
   CHECK(desk.last<Record>().size() == 1);
 }
 
-TEST_CASE("a refused file is not emitted; when nothing is left the reason is said") {
+TEST_CASE("a refused file is not emitted, when nothing is left the reason is said") {
   PilotDesk desk;
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.5, -15.3)), std::nullopt});
   desk.answer("2 land");
@@ -228,7 +228,7 @@ TEST_CASE("fixes that are old, of another glider or far inside the land are refu
   CHECK(desk.last<Say>()[0].text.find("S6") != std::string::npos);
 }
 
-TEST_CASE("a clock that differs by more than five minutes: planned, held, said; clock_skew_ok accepts it") {
+TEST_CASE("a clock that differs by more than five minutes: planned, held, said, clock_skew_ok accepts it") {
   for (const bool ok : {false, true}) {
     PilotDesk desk;
     desk.step(MissionChanged{{{PilotDesk::mission_to_goal(), "yaml", "sha-2"}}, ok, "start"});

@@ -87,7 +87,7 @@ TEST_CASE("the age counts from the reference time, else from the first field") {
   CHECK(Forecast::prepare(view_of(grid), kPlain, {}, nullptr)->age(instant_at(5400)) == Seconds{5400});
 }
 
-TEST_CASE("a forecast without water, or too fast to be true, is refused; a very fast one is warned about") {
+TEST_CASE("a forecast without water, or too fast to be true, is refused, a very fast one is warned about") {
   const auto with_speed = [](double speed) {
     const Grid grid = test::make_grid(test::flat_axes({39, 40}, {4, 5}), [&](double, double, double, double) {
       return std::pair{speed, 0.0};

@@ -44,7 +44,7 @@ TEST_CASE("it grows with the distance and is consistent over one stint") {
   }
 }
 
-TEST_CASE("from a fix the first drift and stint have their own lengths; still water gives the schedule's travel time") {
+TEST_CASE("from a fix the first drift and stint have their own lengths, still water gives the schedule's travel time") {
   model::DiveSchedule schedule;
   schedule.first_stint = Seconds{1800};
   schedule.stint = Seconds{3600};

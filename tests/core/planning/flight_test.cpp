@@ -6,7 +6,7 @@
 
 using namespace glidehelm;
 
-TEST_CASE("an arrival beats none, an earlier one a later one, a nearer approach a farther one; a tie is not better") {
+TEST_CASE("an arrival beats none, an earlier one a later one, a nearer approach a farther one, a tie is not better") {
   planning::Plan arrives, later, near, far;
   arrives.status = later.status = planning::PlanStatus::reaches_goal;
   arrives.arrival_s = 100;

@@ -238,7 +238,7 @@ TEST_CASE("rule 2 tail: a track that keeps clear only at the planned speed is re
   CHECK(c.failing() == "2 tail");
 }
 
-TEST_CASE("a margin is kept from where the track leaves it; before, the distance may only grow") {
+TEST_CASE("a margin is kept from where the track leaves it, before, the distance may only grow") {
   const auto start = geo_point(20, 10);
   const auto track = eastwards(start, 5000);
   const auto keeps = [&](const chart::Area& out, double limit) {

@@ -78,7 +78,7 @@ TEST_CASE("a ring is crossed on the dead-reckoned way, and the next waypoint fol
         2);
 }
 
-TEST_CASE("after the last waypoint the list begins again when it loops; a single one stays the target") {
+TEST_CASE("after the last waypoint the list begins again when it loops, a single one stays the target") {
   const Setting s;
   const std::vector<GeoPoint> points{off(s.flight.fix, 0, 1500), off(s.flight.fix, 0, -1500)};
   std::size_t target = 0;

@@ -172,7 +172,7 @@ TEST_CASE("leaving the area, the forecast and the water are results that say so"
   CHECK(vehicle::word(Lost::left_area) == "left the area of the forecast");
 }
 
-TEST_CASE("a motion stops before the margin; a start inside the margin may only move outwards") {
+TEST_CASE("a motion stops before the margin, a start inside the margin may only move outwards") {
   const auto field = test::still_water();
   const auto rock = geo_point(28, -16);
   const auto chart = forbidding(rock, 2000);

@@ -106,7 +106,8 @@ TEST_CASE("a leg that would be too short is lengthened and ends the list") {
   CHECK(nearly_held.length == Approx(600));
   CHECK(aim_point(dive, Heading{degrees(0)}, glider(1), current(0, -0.3), 14400, Metres{100}).length == Approx(500));
   // A glider that dives before it has drifted 336 m starts outside the ring too.
-  const auto drifted = aim_point(dive, Heading{degrees(0)}, glider(1), current(0, -0.3), 14400, Metres{250}, Metres{336});
+  const auto drifted =
+      aim_point(dive, Heading{degrees(0)}, glider(1), current(0, -0.3), 14400, Metres{250}, Metres{336});
   CHECK(drifted.ends_list);
   CHECK(drifted.length == Approx(836));
 }

@@ -186,7 +186,7 @@ data: time = 0, 1 ; lat = 0, 1 ; lon = 0, 1, 2, 3, 4, 5 ;
   CHECK(borrowed.err.find("warning: gap.nc: axis lat has no unit; taken as degrees") != std::string::npos);
 }
 
-TEST_CASE("many places come from a CSV, one answer each; one without a current makes the whole end with 1") {
+TEST_CASE("many places come from a CSV, one answer each, one without a current makes the whole end with 1") {
   const test::ScratchFolder folder;
   test::write_bytes(folder / "points.csv",
                     "lat,lon,time,depth\n32.5, -16.5, 2024-05-01T00:30:00Z, 10\n# a remark\n\n32.5,-16.5,2024-05-01\n");

@@ -105,7 +105,7 @@ TEST_CASE("replay prints the contract of product.md 9: every key, in its order, 
   CHECK(j["refused"].empty());
 }
 
-TEST_CASE("a refused fix has the same keys, its rule and its reason; what is unknown is null") {
+TEST_CASE("a refused fix has the same keys, its rule and its reason, what is unknown is null") {
   const auto r =
       run({{"a.log", test::connection_block()}, {"b.log", test::connection_block()}}, of({"a.log", "b.log"}));
   CHECK(r.code == 0);

@@ -113,7 +113,7 @@ TEST_CASE("the program explains itself to a person") {
   CHECK(help.out.find("usage: glidehelm-verify") != std::string::npos);
 }
 
-TEST_CASE("wrong arguments and wrong requests are usage errors, missing inputs no verdict; nothing is printed then") {
+TEST_CASE("wrong arguments and wrong requests are usage errors, missing inputs no verdict, nothing is printed then") {
   Bench bench;
   CHECK(bench.run("--judge").code == 2);
   CHECK(bench.run("--judge").out == "");

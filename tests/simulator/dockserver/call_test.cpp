@@ -227,7 +227,7 @@ TEST_CASE("a call whose first block is lost still reprints") {
   CHECK(text.find("Glider sim01 at surface.") == 0);
 }
 
-TEST_CASE("a redial drops the link in mid-line and comes back with the same fix; the script starts anew") {
+TEST_CASE("a redial drops the link in mid-line and comes back with the same fix, the script starts anew") {
   Scene scene;
   scene.folder.offer("goto_l10.ma", list_text("0600.0 4000.0"));
   const auto events = scene.run({.redial = true});

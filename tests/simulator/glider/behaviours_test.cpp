@@ -60,7 +60,7 @@ TEST_CASE("the initial value holds the drift until the first fix, the final one 
   CHECK(g.water()->east.si() == Approx(0).margin(1e-4));
 }
 
-TEST_CASE("with correction 1 the second dive holds the wanted course; with correction 0 it drifts off it") {
+TEST_CASE("with correction 1 the second dive holds the wanted course, with correction 0 it drifts off it") {
   for (const int correction : {0, 1}) {
     auto setup = setup_towards(20);
     setup.belief.correction = correction;

@@ -84,7 +84,7 @@ TEST_CASE("a dive too short for the full depth turns up in time") {
   CHECK(d.deepest().si() == Approx(600 * rate).margin(8 * rate));
 }
 
-TEST_CASE("the current is met at the depth of the yo; a dive's mean is the mean over the profile") {
+TEST_CASE("the current is met at the depth of the yo, a dive's mean is the mean over the profile") {
   // Linear shear: 0.4 m/s east at the surface, 0 at 200 m. A triangle wave between 20 and 200 m spends equal time at
   // each depth, so the mean there is 0.4·(1 − 110/200) = 0.18; the first descent and last climb through the top 20 m
   // (2 × 137 s of 14 400 s, mean 0.38) and the cut last yo move it by at most 0.02.

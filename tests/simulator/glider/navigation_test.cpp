@@ -110,7 +110,7 @@ TEST_CASE("a loop goes on with the first waypoint, and a list inside one radius 
   CHECK_FALSE(nav.ended());
 }
 
-TEST_CASE("a list flown once ends at its last waypoint; end_action says whether the mission ends with it") {
+TEST_CASE("a list flown once ends at its last waypoint, end_action says whether the mission ends with it") {
   const auto first = destination(kHome, Bearing{}, Metres{500});
   for (const int end_action : {0, 6}) {
     Navigator nav{Belief{MetresPerSecond{0.5}, 0}};

@@ -69,7 +69,7 @@ class HeldFlight {
 }  // namespace
 
 TEST_CASE(
-    "SIGHUP: the next file leads to the new goal; a broken file changes nothing and is named by line and column") {
+    "SIGHUP: the next file leads to the new goal, a broken file changes nothing and is named by line and column") {
   HeldFlight flight;
   auto& sea = flight.sea;
   flight.fly_until(1);

@@ -139,7 +139,7 @@ TEST_CASE("a daemon prints every error of all its missions before it gives up") 
   CHECK_FALSE(harbour.folder.has("state"));
 }
 
-TEST_CASE("two daemons never share a to-glider folder or a journal; the first one goes on") {
+TEST_CASE("two daemons never share a to-glider folder or a journal, the first one goes on") {
   Harbour harbour;
   auto first = harbour.start("daemon");
   REQUIRE(

@@ -43,6 +43,14 @@ OceanResult load_ocean(const OceanOrder& order, world::World& world);
 /// `then` is called from the loop.
 void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanResult)> then);
 
+/// What a mission's chart is made of.
+struct ChartOrder {
+  std::string coast_file;
+  std::vector<chart::Area> keep_in, keep_out;
+  explicit ChartOrder(const mission::Mission& m) : coast_file{m.coast_file}, keep_in{m.keep_in}, keep_out{m.keep_out} {}
+  friend bool operator==(const ChartOrder&, const ChartOrder&) = default;
+};
+
 /// The chart of a mission: coast file and areas.
 struct ChartSource {
   chart::Chart chart;

@@ -294,14 +294,13 @@ void Session::follow_mission() {
   const auto& mission = pilot_.mission();
   if (!mission) return;
   emitter_->set_slot(mission->slot);
-  const auto wanted = fmt::format("{}|{}|{}", mission->coast_file, mission->keep_in.size(), mission->name);
-  if (wanted != chart_for_) {
+  if (const ChartOrder wanted{*mission}; wanted != chart_for_) {
     chart_for_ = wanted;
     auto chart = load_chart(*mission, desk_.world.files);
     if (chart) {
       chart_ = std::move(chart).value();
-      if (!chart_->chart.has_coast())
-        desk_.log.warn(entry_.name, "no coastline (safety.coast): land is what the forecast's mask says");
+      if (!chart_->chart.has_coast() && mission->currents.files.empty())
+        desk_.log.warn(entry_.name, "no coastline (safety.coast) and no forecast files: nothing is land");
     } else {
       chart_.reset();
       desk_.log.alert(entry_.name, chart.error() + ". Nothing is planned without the coast");
@@ -480,6 +479,7 @@ void Session::carry_out(const mission::Record& e) {
 }
 
 void Session::fly(std::vector<mission::MissionText> chain, const std::string& by) {
+  chart_for_.reset();  // a file of the same name may have another coast now
   feed(mission::MissionChanged{std::move(chain), entry_.clock_skew_ok, by});
 }
 
@@ -502,12 +502,14 @@ void Session::recover(const std::vector<JournalRecord>& past) {
   }
   const auto settled = emitter_->recover(entry_.name, past, desk_.journal, clock.utc(), clock.tick());
   for (const auto& recovered : settled) {
-    desk_.log.warn(entry_.name, "after a crash: " + recovered.emission.detail);
+    // What became of the surfacing at hand is said by the pilot, which hears it below.
+    if (replayed == 0 || recovered.surfacing != pilot_.surfacing_key())
+      desk_.log.warn(entry_.name, "after a crash: " + recovered.emission.detail);
     if (recovered.emission.fatal) desk_.fatal(recovered.emission.detail);
   }
   if (replayed == 0) return;
-  desk_.log.info(entry_.name, fmt::format("journal: {} events replayed, {} surfacings, the last one is {}", replayed,
-                                          pilot_.surfacings(), mission::word(pilot_.stage())));
+  desk_.log.info(entry_.name, fmt::format("back with {} surfacings from the journal ({} events); the last one: {}",
+                                          pilot_.surfacings(), replayed, mission::word(pilot_.stage())));
   mission::Restarted restarted;
   for (const auto& recovered : settled)
     if (recovered.surfacing == pilot_.surfacing_key())

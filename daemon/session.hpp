@@ -105,7 +105,7 @@ class Session {
   std::vector<decltype(mission::Event::what)> waiting_;
 
   std::shared_ptr<const ChartSource> chart_;
-  std::string chart_for_;                                 ///< what the chart was loaded for
+  std::optional<ChartOrder> chart_for_;                   ///< what the chart was loaded for; none: to be loaded anew
   std::optional<mission::BeginPlanning> planning_waits_;  ///< for its forecast
   struct Asked {
     std::uint64_t ticket{};

@@ -39,19 +39,19 @@ std::string clock_text(Instant t) { return utc_text(t); }
 std::string_view word(Stage stage) {
   switch (stage) {
     case Stage::idle:
-      return "idle";
+      return "none yet";
     case Stage::planning:
-      return "planning";
+      return "being planned";
     case Stage::proposed:
-      return "proposed";
+      return "proposed, waiting for a human";
     case Stage::emitting:
-      return "emitting";
+      return "its file was being written";
     case Stage::queued:
-      return "queued";
+      return "its file is queued";
     case Stage::kept:
-      return "kept";
+      return "no file, the glider keeps its list";
     case Stage::stood_down:
-      return "stood down";
+      return "left to a human";
     case Stage::dived:
       return "under water";
   }

@@ -61,7 +61,7 @@ std::string canonical(const AnalyticField& field) {
 
 std::string names_of(const std::vector<AnalyticField>& fields) {
   std::string names;
-  for (const auto& field : fields) names += (names.empty() ? "" : " + ") + field.spec().kind;
+  for (const auto& field : fields) names += (names.empty() ? "analytic " : " + analytic ") + field.spec().kind;
   return names;
 }
 

@@ -140,3 +140,33 @@ TEST_CASE("SIGHUP brings a glider in and lets one go, all or nothing") {
   flight.fly_to_the_end();
   CHECK(sea.taken().size() == sea.surfacings().size());
 }
+
+TEST_CASE("a keep-out area that a reload moves is kept out of from the next surfacing on") {
+  const auto area = [](double south, double north) {
+    std::string text = "safety:\n  keep_out:\n    -";
+    for (const Place corner : {Place{south, 4.2}, Place{south, 4.4}, Place{north, 4.4}, Place{north, 4.2}})
+      text += std::string{text.back() == '-' ? " " : "      "} + "- {lat_deg: " + std::to_string(corner.lat_deg) +
+              ", lon_deg: " + std::to_string(corner.lon_deg) + "}\n";
+    return text;
+  };
+  HeldFlight flight;
+  auto& sea = flight.sea;
+  sea.write_mission(kFirst, area(43.0, 43.1));  // far behind the goal
+  flight.fly_until(1);
+  static_cast<void>(flight.reload());
+  flight.fly_until(3);
+  constexpr double kSouth = 40.85, kNorth = 40.95;  // across the straight way, 15 km ahead
+  sea.write_mission(kFirst, area(kSouth, kNorth));
+  CHECK(lines_with(flight.reload(), "reloaded").size() == 1);
+  flight.fly_to_the_end();
+
+  int beside = 0;
+  for (const auto& line : sea.surfacings()) {
+    const auto at = line.find(": fix ") + 6;
+    const double lat = std::stod(line.substr(at)), lon = std::stod(line.substr(line.find(',', at) + 1));
+    CAPTURE(line);
+    CHECK_FALSE((lat > kSouth && lat < kNorth && lon > 4.2 && lon < 4.4));
+    beside += lat > kSouth;
+  }
+  CHECK(beside > 0);
+}

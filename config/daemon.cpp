@@ -247,6 +247,18 @@ Expected<DaemonFile, std::vector<ConfigError>> read_daemon_file(std::string_view
   return result;
 }
 
+std::vector<std::string> mission_patterns(std::string_view text, const std::string& file) {
+  const auto document = read_yaml(text, file);
+  if (!document.readable) return {};
+  Reading reading{file};
+  Draft draft;
+  const At root{document.root, nullptr, "", reading};
+  if (!expect_map(root)) return {};
+  fields().read(root, draft);
+  resolve(draft, file);
+  return draft.missions;
+}
+
 Shape daemon_shape() { return fields().shape(); }
 
 std::string daemon_schema() { return json_schema(daemon_shape(), kDaemonSchema, "Glidehelm daemon"); }

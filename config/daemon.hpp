@@ -64,6 +64,10 @@ struct DaemonFile {
 /// On failure every error, by line.
 Expected<DaemonFile, std::vector<ConfigError>> read_daemon_file(std::string_view text, const std::string& file);
 
+/// The resolved `missions` patterns of a daemon file, as far as they can be made out, whatever else is wrong in it: so that
+/// the mistakes of the missions are told together with those of the file that names them.
+std::vector<std::string> mission_patterns(std::string_view text, const std::string& file);
+
 Shape daemon_shape();
 /// config/daemon.schema.json.
 std::string daemon_schema();

@@ -33,10 +33,10 @@ std::string next_name(const mission::Mission& m) {
   return m.after_goal.empty() ? std::string{} : m.after_goal.substr(5);
 }
 
-std::vector<std::string> mission_files(const DaemonConfig& daemon, const std::string& daemon_file,
+std::vector<std::string> mission_files(const std::vector<std::string>& patterns, const std::string& daemon_file,
                                        const Sources& sources, std::vector<ConfigError>& errors) {
   std::vector<std::string> files;
-  for (const auto& pattern : daemon.missions) {
+  for (const auto& pattern : patterns) {
     const auto found = sources.matches(pattern);
     if (found.empty() && pattern.find_first_of("*?[") == std::string::npos)
       errors.push_back(whole_file(daemon_file, "missions", "no such file: " + shown(pattern)));
@@ -117,14 +117,21 @@ Expected<Configuration, std::vector<ConfigError>> load(const std::string& daemon
   if (!text)
     return unexpected(std::vector<ConfigError>{whole_file(daemon_file, "", "cannot be read: " + text.error().reason)});
   auto daemon = read_daemon_file(*text, daemon_file);
-  if (!daemon) return unexpected(std::vector<ConfigError>{daemon.error()});
+  if (!daemon) {  // the missions' own errors are told in the same go
+    std::vector<ConfigError> errors = daemon.error(), ignored;
+    for (const auto& file : mission_files(mission_patterns(*text, daemon_file), daemon_file, sources, ignored))
+      if (const auto bytes = sources.read(file))
+        if (const auto m = read_mission(*bytes, file, sources.read); !m)
+          errors.insert(errors.end(), m.error().begin(), m.error().end());
+    return unexpected(std::move(errors));
+  }
 
   Configuration c;
   c.file = daemon_file;
   c.daemon = std::move(daemon->config);
   c.sha256 = Sha256::of(std::string_view{*text});
   std::vector<ConfigError> errors;
-  for (const auto& file : mission_files(c.daemon, daemon_file, sources, errors)) {
+  for (const auto& file : mission_files(c.daemon.missions, daemon_file, sources, errors)) {
     auto bytes = sources.read(file);
     if (!bytes) {
       errors.push_back(whole_file(file, "", "cannot be read: " + bytes.error().reason));

@@ -361,8 +361,16 @@ FileResult<std::unique_ptr<Folder>> RealFiles::make_folder(const std::string& pa
 }
 
 FileResult<std::string> RealFiles::read(const std::string& path, std::size_t at_most) {
-  Fd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  // Opening a FIFO that nobody writes into would wait for ever. What a shell hands over as /dev/fd/N has its writer.
+  const bool handed_over = path.rfind("/dev/", 0) == 0;
+  Fd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC | (handed_over ? 0 : O_NONBLOCK))};
   if (fd.get() < 0) return failed("open", path);
+  struct ::stat s {};
+  if (::fstat(fd.get(), &s) != 0) return failed("stat", path);
+  if (!handed_over && !S_ISREG(s.st_mode) && !S_ISDIR(s.st_mode)) {  // reading a folder says EISDIR
+    errno = EINVAL;
+    return failed("read", path);
+  }
   return read_fd(fd.get(), path, at_most);
 }
 
@@ -379,7 +387,7 @@ FileResult<FileStat> RealFiles::stat(const std::string& path) {
 }
 
 FileResult<std::unique_ptr<Mapping>> RealFiles::map(const std::string& path) {
-  Fd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
+  Fd fd{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (fd.get() < 0) return failed("open", path);
   struct ::stat s {};
   if (::fstat(fd.get(), &s) != 0) return failed("stat", path);

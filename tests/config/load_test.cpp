@@ -76,6 +76,14 @@ TEST_CASE("errors of all files are told at once") {
               "d/m/c.yaml:3:9: glider: no such glider in d/d.yaml; found sim3; did you mean sim01?"});
 }
 
+TEST_CASE("a daemon file with a mistake does not hide those of its missions") {
+  std::string daemon = kDaemon;
+  daemon.replace(daemon.find("coast"), 5, "coasd");
+  const auto found = errors({{"d/d.yaml", daemon}, {"d/m/a.yaml", mission_yaml("leg-1", "sim01", "planing: 1\n")}});
+  CHECK(found == Lines{"d/d.yaml:3:1: coasd: unknown key; did you mean coast?",
+                       "d/m/a.yaml:6:1: planing: unknown key; did you mean planning?"});
+}
+
 TEST_CASE("a mission for a glider that is not configured names the nearest or all of them") {
   CHECK(errors({{"d/m/a.yaml", mission_yaml("leg-1", "sim02x")}}) ==
         Lines{"d/m/a.yaml:3:9: glider: no such glider in d/d.yaml; found sim02x; did you mean sim02?"});

@@ -109,7 +109,7 @@ TEST_CASE("analytic fields add to a grid on its box, and alone they are a foreca
   CHECK(east_of(both->ocean().dive.sample(geo_point(40, 5), 0)) == Approx(0.35).margin(1e-6));
   CHECK(east_of(both->ocean().surface.sample(geo_point(40, 5), 0)) == Approx(0.45).margin(1e-6));
   CHECK(both->ocean().dive.sample(geo_point(50, 5), 0).error() == NoCurrent::outside_area);
-  CHECK(both->facts().name == "model of Monday + constant");
+  CHECK(both->facts().name == "model of Monday + analytic constant");
   CHECK(both->facts().provenance != provenance_of(grid.facts.sources));
 
   const auto one = Forecast::prepare({constant(0.1)});

@@ -115,6 +115,9 @@ TEST_CASE("what is no regular file is refused at once, not waited for") {
   }
   CHECK(code(folder->lock("fifo")) == EINVAL);
   CHECK(code(files.map(temp.path / "folder")) == EINVAL);
+  CHECK(code(files.map(temp.path / "fifo")) == EINVAL);
+  CHECK(code(files.read(temp.path / "fifo", 100)) == EINVAL);
+  CHECK(code(files.read(temp.path / "folder", 100)) == EISDIR);
   temp.write("one", "x");
   std::filesystem::create_hard_link(temp.path / "one", temp.path / "two");
   CHECK(folder->stat("one").value().links == 2);

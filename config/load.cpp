@@ -18,15 +18,8 @@ ConfigError whole_file(const std::string& file, const std::string& key, std::str
   return error;
 }
 
-/// An error of a key of a mission that is right by itself: its place is looked up once more in the text.
 ConfigError at_key(const LoadedMission& m, const std::string& key, std::string problem) {
-  auto error = whole_file(m.file, key, std::move(problem));
-  if (const auto document = read_yaml(m.text, m.file); document.readable)
-    if (const auto* node = document.root.find(key)) {
-      error.line = node->place.line;
-      error.column = node->place.column;
-    }
-  return error;
+  return error_at(m.text, m.file, key, std::move(problem));
 }
 
 std::string next_name(const mission::Mission& m) {
@@ -111,6 +104,22 @@ void check_circles(const Configuration& c, std::vector<ConfigError>& errors) {
 }
 
 }  // namespace
+
+ConfigError error_at(const std::string& text, const std::string& file, const std::string& key, std::string problem) {
+  auto error = whole_file(file, key, std::move(problem));
+  const auto document = read_yaml(text, file);
+  const Node* node = document.readable ? &document.root : nullptr;
+  for (std::size_t begin = 0; node != nullptr && begin <= key.size();) {
+    const auto end = std::min(key.find('.', begin), key.size());
+    node = node->find(key.substr(begin, end - begin));
+    if (node != nullptr) {  // of a nested key at least the place of what holds it
+      error.line = node->place.line;
+      error.column = node->place.column;
+    }
+    begin = end + 1;
+  }
+  return error;
+}
 
 Expected<Configuration, std::vector<ConfigError>> load(const std::string& daemon_file, const Sources& sources) {
   const auto text = sources.read(daemon_file);

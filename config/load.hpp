@@ -44,4 +44,8 @@ struct Configuration {
 /// mission is none.
 Expected<Configuration, std::vector<ConfigError>> load(const std::string& daemon_file, const Sources& sources);
 
+/// An error of a key (`safety.coast`) of a file that is right by itself: its place is looked up in `text`, that of the
+/// innermost part of the key that stands there.
+ConfigError error_at(const std::string& text, const std::string& file, const std::string& key, std::string problem);
+
 }  // namespace glidehelm::config

@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "daemon/places.hpp"
 #include "daemon/service.hpp"
 #include "daemon/world/program_version.hpp"
 #include "daemon/world/real.hpp"
@@ -54,6 +55,9 @@ int main(int argc, char** argv) {
   }
   glidehelm::world::RealWorld real;
   auto configuration = glidehelm::config::load(file, glidehelm::daemon::sources_of(real.world().files));
+  if (configuration)
+    if (auto errors = glidehelm::daemon::Places{real.world().files}.errors_of(*configuration); !errors.empty())
+      configuration = glidehelm::unexpected(std::move(errors));
   if (!configuration) {
     for (const auto& error : configuration.error()) std::cerr << error.message() << "\n";
     std::cerr << "glidehelmd: " << configuration.error().size()

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "config/mission.hpp"
+#include "daemon/places.hpp"
 
 namespace glidehelm::daemon {
 
@@ -153,8 +154,11 @@ Expected<std::unique_ptr<Session>, std::string> Service::make_session(const conf
 void Service::reload() {
   manager_.reloading();
   auto next = config::load(configuration_.file, sources_of(world_.files));
+  if (next)
+    if (auto errors = Places{world_.files}.errors_of(*next); !errors.empty()) next = unexpected(std::move(errors));
   if (!next) {
-    log_.alert("", fmt::format("reload refused, nothing changed: {} errors", next.error().size()));
+    log_.alert("", fmt::format("reload refused, nothing changed: {} error{}", next.error().size(),
+                               next.error().size() == 1 ? "" : "s"));
     for (const auto& error : next.error()) log_.alert("", error.message());
   } else if (next->daemon.simulated_clock != configuration_.daemon.simulated_clock ||
              next->daemon.state_dir != configuration_.daemon.state_dir) {

@@ -11,6 +11,7 @@
 #include "config/load.hpp"
 #include "config/mission.hpp"
 #include "core/base/text.hpp"
+#include "daemon/places.hpp"
 
 namespace glidehelm::cli {
 
@@ -35,7 +36,8 @@ class Checker {
                    if (!bytes) return unexpected(config::Unreadable{bytes.error().message()});
                    return std::move(*bytes);
                  },
-                 [&world](const std::string& pattern) { return world.files.glob(pattern); }} {}
+                 [&world](const std::string& pattern) { return world.files.glob(pattern); }},
+        places_{world.files} {}
 
   void check(const std::string& file) {
     if (known(file)) return;
@@ -96,6 +98,7 @@ class Checker {
   void check_mission(const std::string& text, Report report) {
     report.kind = "mission";
     auto mission = config::read_mission_file(text, report.file, sources_.read);
+    if (mission) report.problems = places_.errors_of(mission->mission, text, report.file);
     if (mission) {
       report.summary = "mission " + mission->mission.name + " for glider " + mission->mission.glider + " is right";
       report.effective = std::move(mission->effective);
@@ -129,8 +132,7 @@ class Checker {
   /// Errors that only the files together have: each goes to the file that it names.
   void add_errors_across(const std::string& daemon_file) {
     const auto all = config::load(daemon_file, sources_);
-    if (all) return;
-    for (const auto& error : all.error())
+    for (const auto& error : all ? places_.errors_of(*all) : all.error())
       for (auto& report : reports)
         if (report.file == error.file &&
             std::find(report.problems.begin(), report.problems.end(), error) == report.problems.end())
@@ -138,6 +140,7 @@ class Checker {
   }
 
   config::Sources sources_;
+  daemon::Places places_;
 };
 
 void print_text(const std::vector<Report>& reports, bool effective, std::ostream& out, std::ostream& err) {

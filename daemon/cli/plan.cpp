@@ -10,6 +10,7 @@
 #include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
 #include "daemon/candidate.hpp"
+#include "daemon/places.hpp"
 #include "daemon/verify/judge_request.hpp"
 #include "daemon/world/program_version.hpp"
 
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 /// Everything that one plan depends on, resolved.
 struct Case {
   mission::Mission mission;
-  std::string mission_sha256;
+  std::string mission_text;
   std::shared_ptr<const daemon::ChartSource> chart;
   std::shared_ptr<const daemon::OceanSource> ocean;
   mission::PlanningRequest request;
@@ -42,10 +43,11 @@ Json place(GeoPoint p, double t_s) {
 }
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, world::Files& files, std::string& sha256) {
+Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, world::Files& files,
+                                                 std::string& mission_text) {
   const auto bytes = files.read(options.mission, std::size_t{1} << 20);
   if (!bytes) return unexpected(Trouble{2, bytes.error().message()});
-  sha256 = Sha256::of(std::string_view{*bytes}).hex();
+  mission_text = *bytes;
   const auto load = [&files](const std::string& path) -> Expected<std::string, config::Unreadable> {
     auto text = files.read(path, std::size_t{16} << 20);
     if (!text) return unexpected(config::Unreadable{text.error().message()});
@@ -60,7 +62,7 @@ Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, wor
 
 Expected<Case, Trouble> prepare(const PlanOptions& options, world::World& world, std::ostream& err) {
   Case c;
-  auto mission = read_mission(options, world.files, c.mission_sha256);
+  auto mission = read_mission(options, world.files, c.mission_text);
   if (!mission) return unexpected(mission.error());
   c.mission = std::move(mission).value();
   if (!options.method.empty()) c.mission.method = options.method;
@@ -100,12 +102,13 @@ Expected<Case, Trouble> prepare(const PlanOptions& options, world::World& world,
           << utc_text(*at) << "\n";
     }
   }
-  if (facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s) &&
-      c.mission.currents.outside_time == ocean::OutsideTime::forbid)
+  const bool outside = facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s);
+  // A snapshot holds for any time, and a tide comes again; a series held fast is no forecast of another month.
+  if (outside && facts.first_s < facts.last_s && c.mission.currents.outside_time != ocean::OutsideTime::cycle)
     return unexpected(Trouble{
         1, fmt::format("the start time {} lies outside the forecast, which reaches from {} to {}", utc_text(*at),
                        utc_text(instant_at(facts.first_s)), utc_text(instant_at(facts.last_s)))});
-  if (facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s))
+  if (outside)
     err << "warning: the start time " << utc_text(*at) << " lies outside the forecast, which reaches from "
         << utc_text(instant_at(facts.first_s)) << " to " << utc_text(instant_at(facts.last_s)) << "\n";
   auto& r = c.request;
@@ -132,16 +135,6 @@ Expected<Case, Trouble> prepare(const PlanOptions& options, world::World& world,
   r.horizon_wanted = m.horizon.value_or(Seconds{0});
   r.problem.horizon_s = daemon::horizon_of(r);
   return c;
-}
-
-/// A start that is wrong, but right with latitude and longitude swapped and near the goal.
-std::string swap_hint(const Case& c) {
-  const auto& p = *c.mission.start;
-  const auto swapped = GeoPoint::from_degrees(p.lon.degrees(), p.lat.degrees());
-  if (!swapped || c.chart->chart.is_land(*swapped) || distance(*swapped, c.mission.goal) > distance(p, c.mission.goal))
-    return "";
-  return fmt::format(". Swapped it would be {:.4f},{:.4f}, {:.0f} km from the goal: latitude comes first",
-                     swapped->lat.degrees(), swapped->lon.degrees(), distance(*swapped, c.mission.goal).si() / 1000);
 }
 
 Json inputs_json(const Case& c) {
@@ -206,8 +199,9 @@ Json plan_json(const Case& c, const std::optional<mission::Candidate>& found, co
                      {"expansions", plan.statistics.expansions},
                      {"cost_evaluations", plan.statistics.cost_evaluations},
                      {"current_evaluations", plan.statistics.current_evaluations}};
-  j["provenance"] = {
-      {"forecast", c.ocean->label()}, {"mission_sha256", c.mission_sha256}, {"version", world::program_version()}};
+  j["provenance"] = {{"forecast", c.ocean->label()},
+                     {"mission_sha256", Sha256::of(std::string_view{c.mission_text}).hex()},
+                     {"version", world::program_version()}};
   return j;
 }
 
@@ -313,11 +307,16 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
   const auto begin = world.clock.tick();
   const auto waited = [&] { return Seconds{world.clock.tick() - begin}; };
   std::optional<mission::Candidate> found;
-  auto problem = daemon::answer(
+  std::string problem = daemon::answer(
       c->request, *c->ocean, c->chart->chart,
       options.budget ? std::function<bool()>{[&] { return waited() >= *options.budget; }} : std::function<bool()>{},
       [&](mission::Candidate candidate) { found = std::move(candidate); });
-  if (!found && problem.find("start") != std::string::npos) problem += swap_hint(*c);
+  if (!found) {  // a start or goal that cannot be is named with its line
+    std::string places;
+    for (const auto& error : daemon::Places{world.files}.errors_of(c->mission, c->mission_text, options.mission))
+      places += (places.empty() ? "" : "\n") + error.message();
+    if (!places.empty()) problem = places;
+  }
   if (options.json)
     out << plan_json(*c, found, problem, waited().count()).dump() << "\n";
   else if (found)

@@ -353,10 +353,15 @@ int main(int argc, char** argv) {
   OceanOptions ocean_options;
   auto* run_verb = add_run(app, run_options);
   add_ocean(app, ocean_options);
+  const auto* keys_verb = app.add_subcommand("keys", "Print every key of a scenario, as a Markdown table");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kUsage;
+  }
+  if (keys_verb->parsed()) {
+    std::cout << scenario_key_table();
+    return kDone;
   }
   world::RealWorld real;
   auto world = real.world();

@@ -32,6 +32,7 @@ Runner::Runner(world::Net& net, world::Clock& wall, Simulation& simulation, std:
       told_{std::move(told)},
       counted_from_(ports_.size(), 0),
       surfacings_told_(ports_.size(), 0),
+      to_greet_(ports_.size(), false),
       clock_{net, ClockServer::Told{[this] { begin(); }, [this] { on_daemon_lost(); },
                                     [this](const Idle& idle) { on_idle(idle); },
                                     [this](const std::string& line) {
@@ -102,6 +103,34 @@ bool Runner::everybody_there() const {
          std::all_of(lines_.begin(), lines_.end(), [](const auto& line) { return line->open(); });
 }
 
+/// Only lines that the daemon dials are missing, and it is there.
+bool Runner::daemon_must_dial() const {
+  return clock_.connected() && std::all_of(lines_.begin(), lines_.end(),
+                                           [](const auto& line) { return line->open() || !line->address().connect; });
+}
+
+bool Runner::greet_again() {
+  bool any = false;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    if (!to_greet_[i]) continue;
+    to_greet_[i] = false;
+    lines_[i]->write("\r\n");
+    any = true;
+  }
+  if (any) tell(State::told_bytes);
+  return any;
+}
+
+void Runner::let_links_fall() {
+  for (const auto& fall : std::exchange(to_drop_, {})) {
+    if (fall.noticed)
+      lines_[fall.line]->drop();
+    else
+      lines_[fall.line]->abandon();
+    to_greet_[fall.line] = true;
+  }
+}
+
 std::int64_t Runner::tick_of(Instant t) const { return kFirstTick + (t - start_).count(); }
 
 /// When wall time reaches the simulated instant; none without a pace.
@@ -126,10 +155,15 @@ void Runner::proceed() {
   if (state_ == State::over) return;
   if (pace_.clock.empty()) return free_running();
   if (state_ == State::told_time || state_ == State::told_bytes || state_ == State::pacing) return;
-  if (!everybody_there()) return;
   const auto event = simulation_.next_event();
   if (!event) return end(RunOutcome::finished, {});
   Instant target = *event;
+  if (!everybody_there()) {
+    // The daemon's own back-off has to pass before it dials; what the glider does waits for it.
+    if (!daemon_must_dial() || !next_timer_ms_ || start_ + milliseconds{*next_timer_ms_ - kFirstTick} > target) return;
+  } else if (greet_again()) {
+    return;
+  }
   if (next_timer_ms_) target = std::min(target, start_ + milliseconds{*next_timer_ms_ - kFirstTick});
   target = std::max(target, now_);
   const auto due = wall_due(target);
@@ -177,14 +211,14 @@ void Runner::on_idle(const Idle& idle) {
     return tell(State::told_bytes);
   }
   // A link falls only after its last bytes have arrived: closing a stream may throw away what is still under way.
-  for (const auto i : std::exchange(to_drop_, {})) lines_[i]->drop();
+  let_links_fall();
   proceed();
 }
 
 void Runner::let_it_happen() {
   for (auto& output : simulation_.step()) {
-    if (output.event.kind == LineEvent::Kind::dropped)
-      to_drop_.push_back(output.glider);
+    if (output.event.kind != LineEvent::Kind::bytes)
+      to_drop_.push_back({output.glider, output.event.kind == LineEvent::Kind::dropped});
     else
       lines_[output.glider]->write(std::move(output.event.bytes));
   }
@@ -203,10 +237,7 @@ void Runner::free_running() {
     pacer_.reset();
     if (state_ == State::over) return;
     let_it_happen();
-    if (!to_drop_.empty())
-      wall_.call_at(wall_.tick() + kLastBytes, [this] {
-        for (const auto i : std::exchange(to_drop_, {})) lines_[i]->drop();
-      });
+    if (!to_drop_.empty()) wall_.call_at(wall_.tick() + kLastBytes, [this] { let_links_fall(); });
     proceed();
   });
 }

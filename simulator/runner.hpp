@@ -67,6 +67,9 @@ class Runner {
   void on_idle(const Idle& idle);
   void on_daemon_lost();
   void let_it_happen();
+  void let_links_fall();
+  [[nodiscard]] bool greet_again();
+  [[nodiscard]] bool daemon_must_dial() const;
   void free_running();
   void expect_answer();
   void end(RunOutcome outcome, const std::string& why);
@@ -86,7 +89,13 @@ class Runner {
   Told told_;
   std::vector<std::unique_ptr<DialogLine>> lines_;
   std::vector<std::uint64_t> counted_from_;
-  std::vector<std::size_t> surfacings_told_, to_drop_;
+  std::vector<std::size_t> surfacings_told_;
+  struct Fall {
+    std::size_t line{};
+    bool noticed{};  ///< false: the older connection stays open
+  };
+  std::vector<Fall> to_drop_;
+  std::vector<bool> to_greet_;
   ClockServer clock_;
   State state_{State::waiting};
   std::optional<std::int64_t> next_timer_ms_;

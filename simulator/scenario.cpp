@@ -120,6 +120,7 @@ ScenarioGlider glider_of(const GliderDraft& d, const std::string& file, double s
   g.plan.not_taken = d.not_taken;
   g.plan.no_connection_block = d.no_connection_block;
   g.plan.redial = d.redial;
+  g.plan.line = d.line_faults;
   g.initial_list = path_beside(file, d.initial_list);
   g.folder = path_beside(file, d.folder);
   while (g.folder.size() > 1 && g.folder.back() == '/') g.folder.pop_back();

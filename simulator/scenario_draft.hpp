@@ -38,6 +38,7 @@ struct GliderDraft {
   CallSetup call;
   double clock_skew_s{0};
   FaultPlan lost_calls, not_taken, no_connection_block, redial;
+  LineFaultPlan line_faults;
 };
 struct AnalyticDraft : ocean::AnalyticSpec {
   PlaceDraft origin_deg;
@@ -65,6 +66,13 @@ struct ScenarioDraft {
   EndPlan end;
   std::vector<GliderDraft> gliders;
 };
+
+// Keys of the line, in scenario_line_fields.cpp.
+config::Fields<FaultPlan> fault_fields();
+/// `faults`: what goes wrong with calls and their bytes.
+config::Fields<GliderDraft> faults_fields();
+/// `dialog`: which generation prints.
+config::Fields<CallSetup> dialog_fields();
 
 /// Every key of a scenario: name, meaning, range, default.
 const config::Fields<ScenarioDraft>& scenario_fields();

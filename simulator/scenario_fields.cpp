@@ -35,28 +35,6 @@ Fields<CurrentDraft> current_fields(double most) {
   return f;
 }
 
-Fields<FaultPlan> fault_fields() {
-  Fields<FaultPlan> f;
-  f.number({"probability", "chance at each surfacing"}, &FaultPlan::probability, 1, between(0, 1));
-  Shape numbers;
-  numbers.kind = Shape::Kind::list;
-  numbers.parts.push_back(Fields<FaultPlan>::whole_shape(between(1, 1e6)));
-  f.custom(
-      {"surfacings", "surfacings that it always strikes, counted from 1"}, numbers, "[]",
-      [](const At& at, FaultPlan& plan) {
-        if (!config::expect_list(at, 0, 10'000)) return;
-        for (std::size_t i = 0; i < at.node.items.size(); ++i)
-          if (const auto n = config::read_whole(at.item(i), between(1, 1e6)))
-            plan.surfacings.push_back(static_cast<int>(*n));
-      },
-      [](const FaultPlan& plan, const std::string& path, Effective& out) {
-        std::vector<std::string> texts;
-        for (const int n : plan.surfacings) texts.push_back(std::to_string(n));
-        out.leaf(path, "surfacings", config::yaml_list(texts));
-      });
-  return f;
-}
-
 Fields<GliderDraft> vehicle_fields() {
   using G = GliderDraft;
   Fields<G> f;
@@ -121,13 +99,6 @@ Fields<GliderDraft> glider_fields() {
   mission.text({"file", "mission file it flies"}, &G::mission_file);
   mission.whole({"number", "MMMM of MMMM.SSSS"}, &G::mission_number, between(0, 9999));
   mission.whole({"slot", "NN of the goto_lNN.ma that it reads"}, &G::slot, between(0, 99));
-  Fields<G> faults;
-  faults.part({"lost_calls", "no call at all"}, &G::lost_calls, fault_fields());
-  faults.part({"not_taken", "the dockserver's script does not run"}, &G::not_taken, fault_fields());
-  faults.part({"no_connection_block", "the first block of the dialog is lost"}, &G::no_connection_block,
-              fault_fields());
-  faults.part({"redial", "the link drops after the at-surface block and the glider calls again"}, &G::redial,
-              fault_fields());
   Fields<G> f;
   f.text({"name", "name in its dialog", true}, &G::name, config::kName);
   f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields());
@@ -145,7 +116,8 @@ Fields<GliderDraft> glider_fields() {
   f.section({"mission", "what it flies"}, mission);
   f.part({"call", "calls and the dockserver's script"}, &G::call, call_fields());
   f.number({"clock_skew_s", "its clock less UTC"}, &G::clock_skew_s, 1, between(-1e8, 1e8));
-  f.section({"faults", "what goes wrong"}, faults);
+  f.part({"dialog", "what it prints"}, &G::call, dialog_fields());
+  f.section({"faults", "what goes wrong"}, faults_fields());
   return f;
 }
 

@@ -1,7 +1,10 @@
 #include "simulator/simulation.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
+#include <deque>
 
 namespace glidehelm::simulator {
 namespace {
@@ -39,16 +42,20 @@ struct Simulation::Life {
         plan{std::move(member.plan)},
         folder{member.folder},
         glider{plan.setup, truth, chart},
-        faults{random} {
+        faults{random},
+        line_faults{random.stream(1)},
+        noise{plan.line.setup, random.stream(2)} {
     result.started_s = plan.setup.start_s;
     glider.watch(plan.goal, plan.goal_radius);
   }
 
   [[nodiscard]] bool running() const { return result.end == RunEnd::running; }
-  [[nodiscard]] double next_s() const { return call ? call->next_s().value_or(call->dive_s()) : glider.surfaced_s(); }
+  [[nodiscard]] double event_s() const { return call ? call->next_s().value_or(call->dive_s()) : glider.surfaced_s(); }
+  [[nodiscard]] double next_s() const { return on_way.empty() ? event_s() : std::min(event_s(), on_way.front().at_s); }
 
-  bool strikes(const FaultPlan& fault) {
-    const bool by_chance = faults.uniform() < fault.probability;  // always drawn: one fault never shifts another's luck
+  bool strikes(const FaultPlan& fault) { return strikes(fault, faults); }
+  bool strikes(const FaultPlan& fault, Random& random) {
+    const bool by_chance = random.uniform() < fault.probability;  // always drawn: one fault never shifts another's luck
     return by_chance ||
            std::find(fault.surfacings.begin(), fault.surfacings.end(), result.surfacings) != fault.surfacings.end();
   }
@@ -69,7 +76,91 @@ struct Simulation::Life {
     f.not_taken = strikes(plan.not_taken);
     f.no_connection_block = strikes(plan.no_connection_block);
     f.redial = strikes(plan.redial);
+    draw_line_faults(f);
+    told = {};
     call.emplace(plan.call, f, glider, *folder, on_board);
+  }
+
+  void draw_line_faults(CallFaults& f) {
+    const auto& p = plan.line;
+    auto& r = line_faults;
+    f.cut = strikes(p.cut, r);
+    f.half_open = strikes(p.half_open, r);
+    f.call_back = strikes(p.call_back, r);
+    f.late_script = strikes(p.late_script, r);
+    f.transfer_cut = strikes(p.transfer_cut, r);
+    f.science_files = strikes(p.science_files, r);
+    f.wrong_keys = strikes(p.wrong_keys, r);
+    f.chatter = strikes(p.chatter, r);
+    f.garbled = strikes(p.garbled, r);
+    f.injected = strikes(p.injected, r);
+    f.injected_lossily = strikes(p.injected_lossily, r);
+    f.duplicated = strikes(p.duplicated, r);
+    f.slow = strikes(p.slow, r);
+    f.at = r.uniform();
+    f.how = r.uniform();
+  }
+
+  /// What the call said at `now_s` goes out on the line: spoilt, and on a slow line spread over time.
+  void send(double now_s, LineEvent event) {
+    const auto& f = call->faults();
+    if (event.kind == LineEvent::Kind::bytes) event.bytes = noise.spoil(std::move(event.bytes), f);
+    double at_s = std::max(now_s, on_way.empty() ? 0.0 : on_way.back().at_s);
+    if (event.kind != LineEvent::Kind::bytes || !f.slow) return on_way.push_back({at_s, std::move(event)});
+    constexpr double kPieceSeconds = 5;
+    const auto piece = static_cast<std::size_t>(std::max(1.0, plan.line.setup.slow_bytes_per_s * kPieceSeconds));
+    for (std::size_t from = 0; from < event.bytes.size(); from += piece, at_s += kPieceSeconds)
+      on_way.push_back({at_s, {LineEvent::Kind::bytes, event.bytes.substr(from, piece)}});
+  }
+
+  /// What comes out at the other end until `now_s`.
+  void deliver(double now_s, std::vector<LineOutput>& out) {
+    while (!on_way.empty() && on_way.front().at_s <= now_s) {
+      auto& event = on_way.front().event;
+      if (event.kind == LineEvent::Kind::bytes) {
+        if (told.bytes.empty()) {
+          told.opened_s = now_s;
+          ++told.connections;
+        }
+        told.bytes += event.bytes;
+        told.count += event.bytes.size();
+      } else {
+        close_log();
+      }
+      const bool fell = event.kind != LineEvent::Kind::bytes;
+      out.push_back({index, std::move(event)});
+      on_way.pop_front();
+      if (fell) return;  // what follows goes on a new connection, in a step of its own
+    }
+  }
+
+  /// The log of a connection as a dockserver keeps it, and what of it was whole.
+  void close_log() {
+    if (told.bytes.empty()) return;
+    told.whole_fixes += whole_fix_lines(told.bytes);
+    folder->logged({plan.setup.name, plan.call.firmware == Firmware::g1 ? "modem" : "network_net_0",
+                    instant_at(told.opened_s), std::move(told.bytes)});
+    told.bytes.clear();
+  }
+
+  [[nodiscard]] int whole_fix_lines(const std::string& bytes) const {
+    const auto fix = dialog::location_line("GPS Location:", dialog::ddmm(glider.fix().lat.degrees(), 3),
+                                           dialog::ddmm(glider.fix().lon.degrees(), 3), 0.0);
+    const auto head = fix.substr(0, fix.find(" measured"));
+    int count = 0;
+    for (auto at = bytes.find(head); at != std::string::npos; at = bytes.find(head, at + 1)) {
+      const auto end = bytes.find('\n', at);
+      const auto line = bytes.substr(at, end == std::string::npos ? end : end - at);
+      double age = 0;
+      int used = 0;
+      constexpr std::size_t kLength = 75;  // "%-13s %9.3f N %9.3f E measured %10.6g secs ago\r"
+      const bool glued = at > 0 && std::isalpha(static_cast<unsigned char>(bytes[at - 1])) != 0;
+      if (!glued && end != std::string::npos && line.size() >= kLength - 4 && line.size() <= kLength &&
+          std::sscanf(line.c_str() + head.size(), " measured %lf secs ago%n", &age, &used) == 1 &&
+          head.size() + static_cast<std::size_t>(used) + 1 == line.size())
+        ++count;
+    }
+    return count;
   }
 
   void close_call(double now_s) {
@@ -85,6 +176,11 @@ struct Simulation::Life {
     r.target = glider.navigator().target();
     r.faults = call->faults();
     r.call = call->outcome();
+    on_way.clear();
+    close_log();
+    r.bytes = told.count;
+    r.whole_fixes = told.whole_fixes;
+    r.connections = told.connections;
     if (r.call.list) ++result.lists_taken;
     if (r.call.error) ++result.behaviour_errors;
     surfacings.push_back(std::move(r));
@@ -112,7 +208,19 @@ struct Simulation::Life {
   GliderPlan plan;
   ToGlider* folder;
   Glider glider;
-  Random faults;
+  Random faults, line_faults;
+  LineNoise noise;
+  struct OnWay {
+    double at_s{};
+    LineEvent event;
+  };
+  std::deque<OnWay> on_way;
+  struct Told {
+    std::string bytes;  ///< of the connection that is open
+    double opened_s{};
+    std::uint64_t count{};
+    int whole_fixes{}, connections{};
+  } told;
   std::string on_board;
   std::optional<Call> call;
   std::vector<SurfacingRecord> surfacings;
@@ -149,10 +257,14 @@ std::vector<LineOutput> Simulation::step() {
   if (!i) return {};
   auto& life = *lives_[*i];
   std::vector<LineOutput> out;
-  if (!life.call) {
+  const double now_s = life.next_s();
+  if (life.event_s() > now_s) {
+    life.deliver(now_s, out);
+  } else if (!life.call) {
     life.surface();
   } else if (life.call->next_s()) {
-    for (auto& event : life.call->step()) out.push_back({*i, std::move(event)});
+    for (auto& event : life.call->step()) life.send(now_s, std::move(event));
+    life.deliver(now_s, out);
     if (life.call->outcome().error) life.leave_surface(end_);
   } else {
     life.leave_surface(end_);

@@ -20,6 +20,13 @@ struct FaultPlan {
   friend bool operator==(const FaultPlan&, const FaultPlan&) = default;
 };
 
+/// What goes wrong with a glider's line beside the older four faults: one plan per flag of CallFaults.
+struct LineFaultPlan {
+  FaultPlan cut, half_open, call_back, late_script, transfer_cut, science_files, wrong_keys, chatter, garbled, injected,
+      injected_lossily, duplicated, slow;
+  LineSetup setup;
+};
+
 /// One glider of a simulation.
 struct GliderPlan {
   GliderSetup setup;
@@ -27,6 +34,7 @@ struct GliderPlan {
   Metres goal_radius{2000};
   CallSetup call;
   FaultPlan lost_calls, not_taken, no_connection_block, redial;
+  LineFaultPlan line;
 };
 
 /// When a glider's run is over beside an accident or the end of its mission.
@@ -47,6 +55,9 @@ struct SurfacingRecord {
   int target{};  ///< index of the waypoint steered to at the dive
   CallFaults faults;
   CallOutcome call;
+  std::uint64_t bytes{};  ///< that left on the line
+  int whole_fixes{};      ///< `GPS Location:` lines that left undamaged, reprints included
+  int connections{};
 };
 
 enum class RunEnd { running, arrived, accident, behaviour_error, mission_over, surfacings, days };
@@ -73,6 +84,7 @@ struct LineOutput {
 ///
 ///   while (auto next = sim.next_event()) { …let the daemon's timers before *next fire…; for (auto& o : sim.step()) feed(o); }
 ///
+/// A slow line passes its bytes second by second; what is still under way when the glider dives is lost.
 /// Gliders do not interact. Events are in order of time, then of glider. Same plans, same seeds: the same bytes.
 class Simulation {
  public:

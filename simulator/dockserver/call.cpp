@@ -13,6 +13,10 @@ constexpr double kDropAfter = 20;    // from the at-surface block until the link
 constexpr double kRedialAfter = 45;  // from there until the glider calls again
 constexpr double kKeyAfter = 5;      // a script waits this long for its answer before the next key
 constexpr double kResumeBefore = 2;  // Ctrl-R comes just before the keystroke window would run out
+constexpr int kCallBackMinutes = 5;
+constexpr double kFetchBefore = 40, kFetchTakes = 20;  // science files go before the script's `!dockzr *`
+constexpr double kLate = 60, kLatest = 660;            // a late script
+constexpr double kAbortBefore = 4 * 86400;             // the last abort: so long before the mission
 
 std::string slot_file(int slot) {
   char name[24];
@@ -31,15 +35,37 @@ Call::Call(const CallSetup& setup, CallFaults faults, Glider& glider, ToGlider& 
     outcome_.note = "no call";
     return;
   }
-  const double call_s = glider.fix_s() + setup.call_after;
-  if (!faults.no_connection_block) plan(call_s, What::connect);
-  plan(call_s + setup.at_surface_after, What::at_surface);
-  if (faults.redial) plan(call_s + setup.at_surface_after + kDropAfter, What::drop);
-  if (!faults.not_taken)
-    plan(call_s + setup.dockzr_after, What::dockzr);
-  else
-    outcome_.note = "the script did not run";
+  call_s_ = glider.fix_s() + setup.call_after;
+  const double at_surface_s = call_s_ + setup.at_surface_after;
+  if (!faults.no_connection_block) plan(call_s_, What::connect);
+  plan(at_surface_s, What::at_surface);
+  if (faults.chatter) plan(at_surface_s + 5, What::chatter);
+  if (faults.wrong_keys) plan(at_surface_s + 10, What::wrong_key);
+  if (faults.redial || faults.half_open) plan(at_surface_s + kDropAfter, What::drop);
+  if (faults.call_back) plan(at_surface_s + kDropAfter + 10, What::call_back);
+  // Anywhere from the first byte to a little after the usual end of the script.
+  if (faults.cut) plan(call_s_ + faults.at * (setup.dockzr_after + 120), What::cut);
+  if (faults.not_taken) outcome_.note = "the script did not run";
+  plan_script(call_s_);
   plan(resume_s_ - kResumeBefore, What::resume);
+}
+
+void Call::plan_script(double call_s) {
+  if (faults_.not_taken) return;
+  const double late = faults_.late_script ? kLate + faults_.how * (kLatest - kLate) : 0.0;
+  const double dockzr_s = call_s + setup_.dockzr_after + late;
+  if (dockzr_s >= resume_s_ - kResumeBefore) outcome_.note = "the window ended before the script sent anything";
+  if (faults_.science_files) plan(dockzr_s - kFetchBefore, What::science);
+  plan(dockzr_s, What::dockzr);
+}
+
+Report Call::report(double now_s) const {
+  auto r = report_of(*glider_, now_s, left(now_s));
+  r.firmware = setup_.firmware;
+  r.aborts.total = setup_.aborts;
+  r.aborts.at_s = r.mission_started_s - kAbortBefore;
+  r.aborts.mission_number = std::max(0, r.mission_number - 1);
+  return r;
 }
 
 /// What would happen after the keystroke window does not happen any more.
@@ -81,7 +107,8 @@ std::string Call::dockzr(double now_s) {
     outcome_.note = "the window ended during the transfer";
     sending_.clear();
   }
-  plan(now_s + seconds, What::sent);
+  const bool tears = faults_.transfer_cut && !torn_ && !sending_.empty();
+  plan(now_s + (tears ? 0.5 : 1.0) * seconds, tears ? What::torn : What::sent);
   return s;
 }
 
@@ -97,7 +124,7 @@ std::string Call::sent(double now_s) {
     }
     folder_->sent(file, instant_at(now_s));
   }
-  s += dialog::timed_line(report_of(*glider_, now_s, 0).mission_s, "behavior surface_4: ! succeeded:dockzr *");
+  s += dialog::timed_line(report(now_s).mission_s, "behavior surface_4: ! succeeded:dockzr *");
   sending_.clear();
   if (!outcome_.list) outcome_.note = "no " + slot_file(glider_->setup().slot) + " in to-glider";
   if (setup_.reread_always || outcome_.list) plan(now_s + kKeyAfter, What::reread);
@@ -109,8 +136,8 @@ std::string Call::sent(double now_s) {
 }
 
 std::string Call::reread(double now_s) {
-  const auto report = report_of(*glider_, now_s, left(now_s));
-  std::string s = dialog::reread(report.mission_s, report.behavior);
+  const auto now = report(now_s);
+  std::string s = dialog::reread(now.mission_s, now.behavior);
   outcome_.reread = true;
   if (on_board_->empty()) {
     glider_->restart_list(now_s);
@@ -120,38 +147,121 @@ std::string Call::reread(double now_s) {
   if (read) return s;
   outcome_.error = read.error();
   due_.clear();
-  return s + dialog::behaviour_error(report.mission_s, read.error().message());
+  return s + dialog::behaviour_error(now.mission_s, read.error().message());
+}
+
+std::string Call::science(double now_s) {
+  busy_ = true;
+  const auto now = report(now_s);
+  Random random{static_cast<std::uint64_t>(faults_.how * 0x1p53) ^ static_cast<std::uint64_t>(now.segment)};
+  std::string s = "s *.sbd *.tbd\r\n";
+  for (const auto& name : dialog::science_files(now)) {
+    const auto size = static_cast<std::size_t>(random.uniform(300, 2500));
+    fetching_.push_back({name, LineNoise::binary(size, random.stream(size))});
+    s += dialog::science_starts(name, now.glider, fetching_.back().bytes.size()) + fetching_.back().bytes;
+  }
+  plan(now_s + kFetchTakes, What::fetched);
+  return s;
+}
+
+std::string Call::fetched(double now_s) {
+  busy_ = false;
+  std::string s;
+  for (const auto& file : fetching_) {
+    s += dialog::science_ends(file.name, file.bytes.size());
+    folder_->received(file, instant_at(now_s));
+  }
+  fetching_.clear();
+  return s + dialog::timed_line(report(now_s).mission_s, "behavior surface_4: ! succeeded:s *.sbd *.tbd");
+}
+
+/// The link falls behind `last`. Only the glider's own clock goes on: it calls again after `again_after` seconds (never,
+/// when negative) and the script begins anew.
+std::vector<LineEvent> Call::link_falls(double now_s, std::string last, double again_after, LineEvent::Kind kind) {
+  for (const auto what : {What::reprint, What::chatter, What::wrong_key, What::drop, What::call_back, What::science,
+                          What::fetched, What::dockzr, What::torn, What::sent, What::reread})
+    forget(what);
+  busy_ = false;
+  sending_.clear();
+  fetching_.clear();
+  if (again_after < 0) {
+    for (const auto what : {What::connect, What::at_surface, What::resume}) forget(what);
+    if (!outcome_.list) outcome_.note = "the link fell and the glider did not call again";
+  } else {
+    const double again = now_s + again_after;
+    plan(again, What::connect);
+    plan(again + setup_.at_surface_after, What::at_surface);
+    plan_script(again);
+  }
+  return {{LineEvent::Kind::bytes, std::move(last)}, {kind, {}}};
+}
+
+/// The first part of what was being sent is on the glider; the folder keeps its file for the next try.
+std::vector<LineEvent> Call::transfer_is_torn(double now_s) {
+  torn_ = true;
+  const auto& first = sending_.front();
+  std::string got =
+      first.bytes.substr(0, static_cast<std::size_t>(faults_.at * static_cast<double>(first.bytes.size())));
+  if (equal_without_case(first.name, slot_file(glider_->setup().slot))) {
+    outcome_.partial = true;
+    *on_board_ = std::move(got);
+  }
+  outcome_.note = "the link fell in the transfer";
+  constexpr double kCallsAgain = 0.7;
+  return link_falls(now_s,
+                    "**B0100000023be50\r\n\x18"
+                    "B08",
+                    faults_.how < kCallsAgain ? kRedialAfter : -1.0, LineEvent::Kind::dropped);
 }
 
 std::vector<LineEvent> Call::step() {
   const Due now = due_.front();
   due_.erase(due_.begin());
-  const auto report = [&] { return report_of(*glider_, now.at_s, left(now.at_s)); };
+  // The link falls in the middle of a line, as most recorded dialogs end.
+  const auto half_a_block = [&](double share) {
+    auto cut = dialog::at_surface_block(report(now.at_s));
+    cut.resize(static_cast<std::size_t>(share * static_cast<double>(cut.size())));
+    return cut;
+  };
   std::string s;
   switch (now.what) {
     case What::connect:
-      s = dialog::connection_block(report());
+      s = dialog::connection_block(report(now.at_s));
       break;
     case What::at_surface:
     case What::reprint:
-      if (!busy_) s = dialog::at_surface_block(report());
+      if (!busy_) s = dialog::at_surface_block(report(now.at_s));
       plan(now.at_s + setup_.reprint_every, What::reprint);
       break;
-    case What::drop: {
-      // The link falls in the middle of a line, as most recorded dialogs end.
-      auto cut = dialog::at_surface_block(report());
-      cut.resize(cut.size() / 2);
-      const double again = now.at_s + kRedialAfter;
-      forget(What::reprint);
-      forget(What::dockzr);
-      plan(again, What::connect);
-      plan(again + setup_.at_surface_after, What::at_surface);
-      if (!faults_.not_taken) plan(again + setup_.dockzr_after, What::dockzr);
-      return {{LineEvent::Kind::bytes, cut}, {LineEvent::Kind::dropped, {}}};
+    case What::chatter:
+      s = dialog::chatter(report(now.at_s));
+      break;
+    case What::wrong_key:
+      s = dialog::wrong_key(static_cast<int>(faults_.how * 3));
+      break;
+    case What::drop:
+      return link_falls(now.at_s, half_a_block(0.5), kRedialAfter,
+                        faults_.half_open ? LineEvent::Kind::abandoned : LineEvent::Kind::dropped);
+    case What::call_back: {
+      const auto r = report(now.at_s);
+      return link_falls(now.at_s, "H 5\r\n" + dialog::hangs_up(r.mission_s, r.behavior, kCallBackMinutes),
+                        60.0 * kCallBackMinutes, LineEvent::Kind::dropped);
     }
+    case What::cut:
+      forget(What::connect);
+      forget(What::at_surface);
+      return link_falls(now.at_s, half_a_block(faults_.how), -1.0, LineEvent::Kind::dropped);
+    case What::science:
+      s = science(now.at_s);
+      break;
+    case What::fetched:
+      s = fetched(now.at_s);
+      break;
     case What::dockzr:
       s = dockzr(now.at_s);
       break;
+    case What::torn:
+      return transfer_is_torn(now.at_s);
     case What::sent:
       s = sent(now.at_s);
       break;
@@ -159,7 +269,7 @@ std::vector<LineEvent> Call::step() {
       s = reread(now.at_s);
       break;
     case What::resume:
-      s = dialog::resuming(report(), true);
+      s = dialog::resuming(report(now.at_s), true);
       if (setup_.resume_at_once) dive_s_ = now.at_s + kResumeBefore + glider_->setup().times.post_fix;
       due_.clear();
       break;

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "simulator/dockserver/dialog_writer.hpp"
+#include "simulator/dockserver/line_faults.hpp"
 #include "simulator/dockserver/to_glider.hpp"
 #include "simulator/glider/behaviours.hpp"
 
@@ -19,21 +21,15 @@ struct CallSetup {
   double bytes_per_s{100};       ///< … and its speed
   bool reread_always{true};      ///< Ctrl-F at every call, as scripts do; false: only after a goto file was sent
   bool resume_at_once{false};    ///< Ctrl-R as soon as the script is through, not at the end of the scheduled interval
+  Firmware firmware{Firmware::g3};
+  int aborts{};  ///< since reset: what the dialog tells of them
   friend bool operator==(const CallSetup&, const CallSetup&) = default;
 };
 
-/// What goes wrong with one call.
-struct CallFaults {
-  bool lost{};                 ///< no call at all: no byte, no file, no Ctrl-F
-  bool not_taken{};            ///< the script does not run: files stay where they are
-  bool no_connection_block{};  ///< the first block is lost; only at-surface blocks are read
-  bool redial{};               ///< the link drops after the at-surface block; the glider calls again
-  friend bool operator==(const CallFaults&, const CallFaults&) = default;
-};
-
-/// What came over the line: bytes, or the link fell and what follows comes on a new connection.
+/// What came over the line: bytes; or the link fell and what follows comes on a new connection; or it was `abandoned`:
+/// what follows comes on a new connection while the older one stays open and silent.
 struct LineEvent {
-  enum class Kind { bytes, dropped } kind{};
+  enum class Kind { bytes, dropped, abandoned } kind{};
   std::string bytes;
   friend bool operator==(const LineEvent&, const LineEvent&) = default;
 };
@@ -42,6 +38,7 @@ struct LineEvent {
 struct CallOutcome {
   std::vector<std::string> sent;        ///< names of all files that reached the glider
   std::optional<OfferedFile> list;      ///< the goto list among them, when it is the one the mission reads
+  bool partial{};                       ///< a cut transfer left the first part of a goto list on the glider
   bool reread{};                        ///< Ctrl-F was pressed
   std::optional<BehaviourError> error;  ///< the list that was read was bad: the mission is over
   std::string note;                     ///< why no list was taken; empty when one was
@@ -50,6 +47,8 @@ struct CallOutcome {
 /// One call of a glider on the surface, from the connection block to the dive, and the script that answers it:
 /// at `dockzr_after` it sends what lies in `to-glider` (a file that arrives later waits for the next surfacing), then
 /// presses Ctrl-F, and Ctrl-R at the end of the scheduled surface interval (or at once). Nobody extends the window.
+///
+/// The link may fall on the way, and the glider may call again: then the script begins anew.
 ///
 /// On its files the glider keeps the last `goto_lNN.ma` that it was sent; Ctrl-F reads that one, or the list that it
 /// started with when none came yet.
@@ -68,7 +67,23 @@ class Call {
   [[nodiscard]] const CallFaults& faults() const { return faults_; }
 
  private:
-  enum class What { connect, at_surface, drop, reprint, dockzr, sent, reread, resume };
+  enum class What {
+    connect,
+    at_surface,
+    chatter,
+    wrong_key,
+    drop,
+    call_back,
+    cut,
+    reprint,
+    science,
+    fetched,
+    dockzr,
+    torn,
+    sent,
+    reread,
+    resume
+  };
   struct Due {
     double at_s{};
     What what{};
@@ -77,6 +92,12 @@ class Call {
   void forget(What what);
   std::string dockzr(double now_s);
   std::string sent(double now_s);
+  std::string science(double now_s);
+  std::string fetched(double now_s);
+  void plan_script(double call_s);
+  std::vector<LineEvent> link_falls(double now_s, std::string last, double again_after, LineEvent::Kind kind);
+  std::vector<LineEvent> transfer_is_torn(double now_s);
+  [[nodiscard]] Report report(double now_s) const;
   std::string reread(double now_s);
   [[nodiscard]] double left(double now_s) const { return resume_s_ - now_s; }
 
@@ -86,8 +107,9 @@ class Call {
   ToGlider* folder_;
   std::string* on_board_;
   std::vector<Due> due_;
-  std::vector<OfferedFile> sending_;
-  bool busy_{};
+  std::vector<OfferedFile> sending_, fetching_;
+  bool busy_{}, torn_{};
+  double call_s_{};
   double dive_s_{}, resume_s_{};
   CallOutcome outcome_;
 };

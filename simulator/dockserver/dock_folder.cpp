@@ -38,10 +38,11 @@ Expected<std::unique_ptr<world::Folder>, FolderError> make_marked(world::Files& 
   return folder;
 }
 
-std::string archive_name(const std::string& file, Instant when) {
-  std::string stamp = utc_text(when);  // 2026-11-25T10:20:30Z → 20261125T102030
+/// 2026-11-25T10:20:30Z → 20261125T102030
+std::string stamp_of(Instant when) {
+  std::string stamp = utc_text(when);
   for (const char c : {'-', ':', 'Z'}) stamp.erase(std::remove(stamp.begin(), stamp.end(), c), stamp.end());
-  return stamp + "_" + file;
+  return stamp;
 }
 
 }  // namespace
@@ -53,9 +54,15 @@ Expected<std::unique_ptr<DockFolder>, FolderError> DockFolder::make(world::Files
   if (!to_glider) return unexpected(to_glider.error());
   auto archive = make_path(files, folder + "/archive");
   if (!archive) return unexpected(archive.error());
+  auto from_glider = make_path(files, folder + "/from-glider");
+  if (!from_glider) return unexpected(from_glider.error());
+  auto logs = make_path(files, folder + "/logs");
+  if (!logs) return unexpected(logs.error());
   auto dock = std::unique_ptr<DockFolder>{new DockFolder};
   dock->to_glider_ = std::move(*to_glider);
   dock->archive_ = std::move(*archive);
+  dock->from_glider_ = std::move(*from_glider);
+  dock->logs_ = std::move(*logs);
   return dock;
 }
 
@@ -89,10 +96,21 @@ void DockFolder::remember(Instant now) {
 }
 
 void DockFolder::sent(const OfferedFile& file, Instant when) {
-  const auto kept = archive_->create(archive_name(file.name, when), file.bytes, 0644);
-  if (!kept) trouble_ = kept.error().message();
+  keep(*archive_, stamp_of(when) + "_" + file.name, file.bytes);
   const auto gone = to_glider_->unlink(file.name);
   if (!gone) trouble_ = gone.error().message();
+}
+
+void DockFolder::received(const OfferedFile& file, Instant) { keep(*from_glider_, file.name, file.bytes); }
+
+void DockFolder::logged(const CallLog& log) {
+  keep(*logs_, log.glider + "_" + stamp_of(log.opened) + "_" + log.medium + ".log", log.bytes);
+}
+
+void DockFolder::keep(world::Folder& folder, const std::string& name, const std::string& bytes) {
+  if (folder.stat(name)) static_cast<void>(folder.unlink(name));  // of an earlier run, or fetched again after a redial
+  const auto kept = folder.create(name, bytes, 0644);
+  if (!kept) trouble_ = kept.error().message();
 }
 
 std::string DockFolder::take_trouble() {

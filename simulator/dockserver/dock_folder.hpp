@@ -20,7 +20,8 @@ struct FolderError {
 /// The marker that a folder is glidersim's own: a daemon on a simulated clock writes nowhere else (product.md 4).
 inline constexpr const char* kMarker = ".glidersim";
 
-/// A dockserver folder on disk: the marker file, to-glider and archive. `make` creates what is absent; a folder that
+/// A dockserver folder on disk: the marker file, to-glider, from-glider, archive (`20260301T103000_goto_l10.ma`: what was
+/// sent) and logs (`sim01_20260301T103000_network_net_0.log`, one per connection). `make` creates what is absent; a folder that
 /// exists without the marker and holds anything belongs to somebody and is refused.
 class DockFolder final : public ToGlider {
  public:
@@ -28,6 +29,8 @@ class DockFolder final : public ToGlider {
 
   std::vector<OfferedFile> contents(Instant now) override;
   void sent(const OfferedFile& file, Instant when) override;
+  void received(const OfferedFile& file, Instant when) override;
+  void logged(const CallLog& log) override;
 
   /// Until `when`, `contents` keeps answering what `remember` last saw: files that computing put there later than it
   /// started are not there yet when its time is charged. `remember` does nothing while news are hidden at `now`.
@@ -39,7 +42,8 @@ class DockFolder final : public ToGlider {
  private:
   DockFolder() = default;
   std::vector<OfferedFile> look();
-  std::unique_ptr<world::Folder> to_glider_, archive_;
+  void keep(world::Folder& folder, const std::string& name, const std::string& bytes);
+  std::unique_ptr<world::Folder> to_glider_, from_glider_, archive_, logs_;
   std::vector<OfferedFile> remembered_;
   std::optional<Instant> hidden_until_;
   std::string trouble_;

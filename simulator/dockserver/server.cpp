@@ -83,9 +83,21 @@ void DialogLine::drop() {
   if (address_.connect) dial();
 }
 
+void DialogLine::abandon() {
+  if (!address_.connect) return drop();
+  if (!stream_) return;
+  if (abandoned_) abandoned_->close();
+  abandoned_ = std::move(stream_);
+  stream_.reset();
+  if (told_.changed) told_.changed();
+  dial();
+}
+
 void DialogLine::close() {
   closed_ = true;
   listener_.reset();
+  if (abandoned_) abandoned_->close();
+  abandoned_.reset();
   if (stream_) stream_->close();
   stream_.reset();
 }

@@ -32,6 +32,9 @@ class DialogLine {
   void write(std::string bytes);
   /// The link falls: the stream is closed and a new one is sought at once.
   void drop();
+  /// The link falls and nobody notices: the older stream stays open and silent, a new one is sought at once. Only the side
+  /// that dials can do so; a line that listens drops.
+  void abandon();
   /// Bytes written over the life of this line.
   [[nodiscard]] std::uint64_t total() const { return total_; }
   /// Bytes written to the stream that is open now; 0 when none is.
@@ -49,7 +52,7 @@ class DialogLine {
   LineAddress address_;
   Told told_;
   std::unique_ptr<world::Listener> listener_;
-  std::shared_ptr<world::Stream> stream_;
+  std::shared_ptr<world::Stream> stream_, abandoned_;
   std::shared_ptr<int> alive_ = std::make_shared<int>(0);  ///< callbacks of the loop may outlive this object
   std::uint64_t total_{}, on_stream_{};
   bool closed_{}, complained_{};

@@ -14,7 +14,15 @@ struct OfferedFile {
   friend bool operator==(const OfferedFile&, const OfferedFile&) = default;
 };
 
-/// The dockserver's `to-glider` folder as its script sees it.
+/// All that was heard on one connection.
+struct CallLog {
+  std::string glider, medium;  ///< "network_net_0", "modem"
+  Instant opened;
+  std::string bytes;
+  friend bool operator==(const CallLog&, const CallLog&) = default;
+};
+
+/// The dockserver's folders of one glider as its script sees them: above all `to-glider`.
 class ToGlider {
  public:
   virtual ~ToGlider() = default;
@@ -22,6 +30,10 @@ class ToGlider {
   virtual std::vector<OfferedFile> contents(Instant now) = 0;
   /// The transfer of this file ended: archive the bytes that were sent and unlink the name, whatever lies under it now.
   virtual void sent(const OfferedFile& file, Instant when) = 0;
+  /// A file came from the glider: it goes to from-glider.
+  virtual void received(const OfferedFile& /*file*/, Instant /*when*/) {}
+  /// A connection ended: its log goes to logs.
+  virtual void logged(const CallLog& /*log*/) {}
 };
 
 /// A folder of values: for simulations in one process.
@@ -37,12 +49,17 @@ class MemoryToGlider final : public ToGlider {
     archive_.push_back(file);
     files_.erase(file.name);
   }
+  void received(const OfferedFile& file, Instant) override { from_glider_.push_back(file); }
+  void logged(const CallLog& log) override { logs_.push_back(log); }
   [[nodiscard]] const std::vector<OfferedFile>& archive() const { return archive_; }
+  [[nodiscard]] const std::vector<OfferedFile>& from_glider() const { return from_glider_; }
+  [[nodiscard]] const std::vector<CallLog>& logs() const { return logs_; }
   [[nodiscard]] bool empty() const { return files_.empty(); }
 
  private:
   std::map<std::string, std::string> files_;
-  std::vector<OfferedFile> archive_;
+  std::vector<OfferedFile> archive_, from_glider_;
+  std::vector<CallLog> logs_;
 };
 
 }  // namespace glidehelm::simulator

@@ -15,6 +15,12 @@ using mission::OutsideTime;
 constexpr int kMostFields = 16;
 
 Range any_number() { return {}; }
+Range from_to(double low, double high) {
+  Range range;
+  range.low = low;
+  range.high = high;
+  return range;
+}
 Range above_zero(double high) {
   Range range;
   range.low = 0;
@@ -247,6 +253,12 @@ const Fields<CurrentsItem>& item_fields() {
                                                               {"akima", Interpolation::akima}});
     f.section({"variables", "names of the velocity variables, where they are not recognised"}, variables);
     f.time({"time_epoch", "time 0 of files whose time axis says none", false, "as the files say"}, &C::time_epoch);
+    f.flag({"local_correction", "what the glider measured less what the forecast said is added to it near the glider"},
+           &C::local_correction);
+    f.number({"correction_length_km", "L: the correction falls with the distance d as exp(−d²/2L²)"},
+             &C::correction_length, 1000, from_to(1, 1000));
+    f.number({"correction_time_h", "T: the correction falls with the time t as exp(−t/T)"}, &C::correction_time, 3600,
+             from_to(0.5, 1000));
     return f;
   }();
   return kFields;
@@ -318,6 +330,9 @@ void read_currents(const At& at, std::vector<CurrentsItem>& items) {
   share(items, &CurrentsItem::east, "variables.east", at);
   share(items, &CurrentsItem::north, "variables.north", at);
   share(items, &CurrentsItem::time_epoch, "time_epoch", at);
+  share(items, &CurrentsItem::local_correction, "local_correction", at);
+  share(items, &CurrentsItem::correction_length, "correction_length_km", at);
+  share(items, &CurrentsItem::correction_time, "correction_time_h", at);
 }
 
 void print_currents(const std::vector<CurrentsItem>& items, const std::string& path, Effective& out) {
@@ -343,6 +358,9 @@ mission::Currents resolve_currents(const std::vector<CurrentsItem>& items) {
     currents.east_variable = item.east;
     currents.north_variable = item.north;
     currents.time_epoch = item.time_epoch;
+    currents.local_correction = item.local_correction;
+    currents.correction_length = item.correction_length;
+    currents.correction_time = item.correction_time;
     if (!item.analytic) continue;
     const auto& draft = *item.analytic;
     mission::AnalyticSpec spec = draft;

@@ -32,6 +32,9 @@ struct CurrentsItem {
   mission::Interpolation interpolation{mission::Interpolation::linear};
   std::string east, north;
   std::optional<Instant> time_epoch;
+  bool local_correction{mission::Currents{}.local_correction};
+  Metres correction_length{mission::Currents{}.correction_length};
+  Seconds correction_time{mission::Currents{}.correction_time};
 };
 
 /// The shape of `currents`: a map, or a list of maps whose fields add up.

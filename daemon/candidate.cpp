@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/ocean/corrected.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
 #include "core/vehicle/steering.hpp"
@@ -12,6 +13,19 @@
 namespace glidehelm::daemon {
 
 namespace {
+
+/// The forecast as a request wants it: corrected by what the glider measured, where that is known.
+class PlanningOcean {
+ public:
+  PlanningOcean(const OceanSource& source, const mission::PlanningRequest& request) : ocean_{source.forecast.ocean()} {
+    if (request.correction && request.correction->plausible()) corrected_.emplace(ocean_, *request.correction);
+  }
+  [[nodiscard]] ocean::Ocean ocean() const { return corrected_ ? corrected_->ocean() : ocean_; }
+
+ private:
+  ocean::Ocean ocean_;
+  std::optional<ocean::CorrectedOcean> corrected_;
+};
 
 safety::Promise promise_of(const model::WaypointList& list, const vehicle::FlownList& flown,
                            const planning::Problem& problem) {
@@ -30,8 +44,8 @@ safety::Promise promise_of(const model::WaypointList& list, const vehicle::Flown
 mission::Candidate with_list(planning::Plan plan, const model::WaypointList& list,
                              const mission::PlanningRequest& request, const planning::Problem& problem,
                              const OceanSource& ocean, const chart::Chart& chart) {
-  const auto waters_ocean = ocean.forecast.ocean();
-  const vehicle::Waters waters{waters_ocean, chart, problem.coast_margin};
+  const PlanningOcean waters_ocean{ocean, request};
+  const vehicle::Waters waters{waters_ocean.ocean(), chart, problem.coast_margin};
   mission::Candidate candidate;
   candidate.request = request.id;
   candidate.plan = std::move(plan);
@@ -59,6 +73,26 @@ mission::Candidate station(const mission::PlanningRequest& request, const planni
   return with_list(std::move(plan), list, request, problem, ocean, chart);
 }
 
+/// The file that lies in to-glider since an earlier surfacing, as it is flown from this fix.
+mission::Candidate queued(const mission::QueuedFile& file, const mission::PlanningRequest& request,
+                          const planning::Problem& problem, const OceanSource& ocean, const chart::Chart& chart) {
+  planning::Plan plan;
+  plan.method = "queued";
+  plan.arrival_s = std::nan("");
+  plan.remaining = distance(problem.start.fix, planning::disc_of(problem).centre);
+  plan.reason = "the list of an earlier surfacing";
+  auto candidate = with_list(std::move(plan), file.list, request, problem, ocean, chart);
+  if (const auto arrival = candidate.promise.list_arrival_s) {
+    candidate.plan.status = planning::PlanStatus::reaches_goal;
+    candidate.plan.arrival_s = *arrival;
+    candidate.plan.remaining = Metres{0};
+    candidate.plan.reason.clear();
+  }
+  candidate.file_name = file.name;
+  candidate.file_bytes = file.bytes;
+  return candidate;
+}
+
 }  // namespace
 
 double horizon_of(const mission::PlanningRequest& request) {
@@ -73,8 +107,8 @@ double horizon_of(const mission::PlanningRequest& request) {
 mission::Candidate candidate_for(const planning::Plan& plan, const mission::PlanningRequest& request,
                                  const planning::Problem& problem, const OceanSource& ocean,
                                  const chart::Chart& chart) {
-  const auto waters_ocean = ocean.forecast.ocean();
-  const vehicle::Waters waters{waters_ocean, chart, problem.coast_margin};
+  const PlanningOcean waters_ocean{ocean, request};
+  const vehicle::Waters waters{waters_ocean.ocean(), chart, problem.coast_margin};
   const auto list = vehicle::list_for(plan.stints, planning::flight_of(problem), waters,
                                       {request.max_waypoints, request.list_radius, request.at_end});
   return with_list(plan, list, request, problem, ocean, chart);
@@ -90,13 +124,16 @@ std::string answer(const mission::PlanningRequest& request, const OceanSource& o
     candidate.number = ++number;
     found(std::move(candidate));
   };
+  if (request.queued) give(queued(*request.queued, request, problem, ocean, chart));
   if (request.purpose == mission::PlanningRequest::Purpose::station) {
     give(station(request, problem, ocean, chart));
     return "";
   }
   const auto planner = planning::planner_named(request.method);
   if (!planner) return "there is no method " + request.method;
-  const std::array<ocean::Ocean, 1> members{ocean.forecast.ocean()};
+  const PlanningOcean waters{ocean, request};
+  const std::array<ocean::Ocean, 1> members{waters.ocean()};
+  const auto found_before = number;
   std::string last_method;
   const auto plan = planner->plan(problem, members, chart, {work, expired}, [&](const planning::Plan& p) {
     if (p.stints.empty() || p.method == last_method) return;  // the final call repeats the best plan
@@ -104,7 +141,7 @@ std::string answer(const mission::PlanningRequest& request, const OceanSource& o
     give(candidate_for(p, request, problem, ocean, chart));
   });
   if (!plan) return plan.error().message;
-  if (number == 0) return plan->reason.empty() ? "the plan has no stint" : plan->reason;
+  if (number == found_before) return plan->reason.empty() ? "the plan has no stint" : plan->reason;
   return "";
 }
 

@@ -180,6 +180,20 @@ FolderView Emitter::inspect() {
   return view;
 }
 
+std::string Emitter::glance() {
+  const auto names = target_->list();
+  if (!names) return names.error().message();
+  std::string text;
+  for (const auto& found : *names) {
+    if (!equal_without_case(found, name_)) continue;
+    const auto stat = target_->stat(found);
+    text += stat ? fmt::format("{} {} {} {} {} {} {}\n", found, stat->device, stat->inode, stat->size,
+                               stat->modified_ns, stat->links, stat->regular)
+                 : found + " " + stat.error().message() + "\n";
+  }
+  return text;
+}
+
 /// E5: everything that may have changed since the verdict, cheapest last. What cannot be checked forbids.
 std::optional<std::string> Emitter::objection(const EmissionOrder&) {
   if (transfer_open_) return "a transfer to the glider is open: nothing is changed under it";

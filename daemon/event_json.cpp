@@ -99,7 +99,13 @@ void members(Moment& m, F&& f) {
 }
 template <class F>
 void members(SurfacingHeard& e, F&& f) {
-  f("surfacing", e.surfacing), f("coast_distance_m", e.coast_distance);
+  f("surfacing", e.surfacing), f("coast_distance_m", e.coast_distance), f("forecast", e.forecast);
+}
+/// Journals of before there was a forecast in this event replay too.
+inline void read(const json& j, SurfacingHeard& e) {
+  json complete = j;
+  if (complete.is_object() && !complete.contains("forecast")) complete["forecast"] = nullptr;
+  values::read_members(complete, e);
 }
 template <class F>
 void members(FixRefused& e, F&& f) {
@@ -160,11 +166,15 @@ void members(Restarted& e, F&& f) {
 }
 
 template <class F>
+void members(QueuedFile& q, F&& f) {
+  f("surfacing", q.surfacing), f("name", q.name), f("bytes", q.bytes), f("list", q.list);
+}
+template <class F>
 void members(PlanningRequest& r, F&& f) {
   f("id", r.id), f("surfacing", r.surfacing), f("purpose", r.purpose), f("problem", r.problem), f("method", r.method),
       f("slot", r.slot);
   f("max_waypoints", r.max_waypoints), f("list_radius_m", r.list_radius), f("at_end", r.at_end), f("stamp_ms", r.stamp);
-  f("horizon_wanted_s", r.horizon_wanted);
+  f("horizon_wanted_s", r.horizon_wanted), f("correction", r.correction), f("queued", r.queued);
 }
 template <class F>
 void members(BeginPlanning& e, F&& f) {
@@ -236,7 +246,8 @@ void read_alternative(const json& j, std::string_view name, Variant& value) {
       return;
     }
     std::variant_alternative_t<I, Variant> alternative{};
-    values::read(j, alternative);
+    using values::read;
+    read(j, alternative);
     value = std::move(alternative);
   }
 }

@@ -116,6 +116,25 @@ void load_ocean_async(const OceanOrder& order, world::World& world, std::functio
                      });
 }
 
+std::optional<Current> mean_along(const OceanSource& ocean, const mission::Dive& dive, GeoPoint to, double until_s) {
+  constexpr int kSamples = 24;
+  const double seconds = until_s - dive.from_s;
+  if (!(seconds > 600 && seconds < 4 * 86400.0)) return std::nullopt;
+  const auto field = ocean.forecast.ocean().dive;
+  const double lat = dive.from.lat.radians(), lon = dive.from.lon.radians();
+  const double dlat = to.lat.radians() - lat, dlon = std::remainder(to.lon.radians() - lon, 2 * kPi);
+  double east = 0, north = 0;
+  for (int i = 0; i < kSamples; ++i) {
+    const double share = (i + 0.5) / kSamples;
+    const auto sample =
+        field.sample(GeoPoint::from_kernel(lat + share * dlat, lon + share * dlon), dive.from_s + share * seconds);
+    if (!sample) return std::nullopt;
+    east += sample->current.east.si() / kSamples;
+    north += sample->current.north.si() / kSamples;
+  }
+  return Current{MetresPerSecond{east}, MetresPerSecond{north}};
+}
+
 Expected<std::shared_ptr<const ChartSource>, std::string> load_chart(const mission::Mission& mission,
                                                                      world::Files& files) {
   auto source = std::make_shared<ChartSource>();

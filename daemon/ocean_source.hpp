@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mission/learning.hpp"
 #include "core/mission/mission.hpp"
 #include "core/ocean/forecast.hpp"
 #include "daemon/verify/dossier_json.hpp"
@@ -42,6 +43,11 @@ struct OceanOrder {
 OceanResult load_ocean(const OceanOrder& order, world::World& world);
 /// `then` is called from the loop.
 void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanResult)> then);
+
+/// Mean of the uncorrected forecast over the dive profile along the straight way from `dive` to a fix at epoch second
+/// `until_s`, flown at constant speed: 24 samples. None when a sample has no current, or the dive is shorter than 10 min
+/// or longer than 4 days.
+std::optional<Current> mean_along(const OceanSource& ocean, const mission::Dive& dive, GeoPoint to, double until_s);
 
 /// What a mission's chart is made of.
 struct ChartOrder {

@@ -86,6 +86,7 @@ Session::~Session() {
   *alive_ = false;
   for (const auto& [timer, id] : timers_) desk_.world.clock.cancel(id);
   desk_.world.clock.cancel(idle_timer_);
+  desk_.world.clock.cancel(folder_timer_);
   for (const auto& [request, asked] : asked_) desk_.worker.stop(asked.ticket);
 }
 
@@ -135,7 +136,10 @@ void Session::apply(Change change) {
     closed("the line moves");
     line_ = std::move(change.line);
   }
-  if (change.emitter) emitter_ = std::move(change.emitter);
+  if (change.emitter) {
+    emitter_ = std::move(change.emitter);
+    glanced_ = "another folder";
+  }
   entry_ = std::move(change.entry);
 }
 
@@ -212,7 +216,16 @@ void Session::hear_block(const protocol::SurfaceBlock& block) {
   }
   std::optional<Metres> coast;
   if (chart_ && chart_->chart.has_coast()) coast = chart_->chart.distance_to_coast(surfacing->fix);
-  feed(mission::SurfacingHeard{std::move(surfacing).value(), coast});
+  const auto forecast = forecast_of_dive(*surfacing);
+  feed(mission::SurfacingHeard{std::move(surfacing).value(), coast, forecast});
+}
+
+/// The forecast in use, along the dive that this fix ends: what the pilot compares with the measured current.
+std::optional<Current> Session::forecast_of_dive(const model::Surfacing& surfacing) const {
+  const auto dive = pilot_.dive_under_way();
+  const auto ocean = forecast_.current();
+  if (!dive || !ocean) return std::nullopt;
+  return mean_along(*ocean, *dive, surfacing.fix, epoch_seconds(surfacing.fix_taken));
 }
 
 void Session::hear(const protocol::DialogEvent& event) {
@@ -241,6 +254,9 @@ void Session::hear(const protocol::DialogEvent& event) {
       if (lower(e.file).ends_with(session.emitter_->file_name())) session.emitter_->set_transfer_open(false);
       session.feed(mission::TransferHeard{e.file, true});
     }
+    void operator()(const protocol::TransferFailed&) const {}
+    void operator()(const protocol::CommandEnded&) const {}
+    void operator()(const protocol::NothingToSend&) const {}
     void operator()(const protocol::MafilesReread&) const { session.feed(mission::ListReread{}); }
     void operator()(const protocol::AbortSeen& e) const {
       session.desk_.log.alert(session.entry_.name,
@@ -282,6 +298,7 @@ void Session::feed(decltype(mission::Event::what) what) {
   }
   stepping_ = false;
   follow_mission();
+  watch_folder();
   desk_.changed();
 }
 
@@ -441,18 +458,39 @@ void Session::carry_out(const mission::Emit& e) {
   }
   for (const auto& [hash, name] : staged_) emitter_->discard(name);
   staged_.clear();
+  if (emission.outcome == Emission::Outcome::queued) glanced_ = emitter_->glance();
   feed(ended(emission, e.surfacing));
 }
 
-void Session::carry_out(const mission::InspectFolder&) {
+void Session::carry_out(const mission::InspectFolder&) { feed(look_into_folder()); }
+
+mission::FolderSeen Session::look_into_folder() {
   using What = FolderView::What;
   using Found = mission::FolderSeen::Found;
+  glanced_ = emitter_->glance();  // before: what changes meanwhile is seen at the next look
   const auto view = emitter_->inspect();
   const auto found = view.what == What::nothing   ? Found::nothing
                      : view.what == What::ours    ? Found::ours
                      : view.what == What::foreign ? Found::foreign
                                                   : Found::unreadable;
-  feed(mission::FolderSeen{found, view.detail});
+  return {found, view.detail};
+}
+
+/// Every second while a window is open or a file of ours lies there: a human's file must be heard of at once, and so must
+/// a file that was taken. Only what changed becomes an event. On whole seconds, so that the gliders of a fleet look
+/// together and a simulated clock stops once for all of them.
+void Session::watch_folder() {
+  if (watching_folder_ || !pilot_.watches_folder()) return;
+  watching_folder_ = true;
+  auto& clock = desk_.world.clock;
+  const auto next = std::chrono::floor<std::chrono::seconds>(clock.tick()) + std::chrono::seconds{1};
+  folder_timer_ = clock.call_at(next, [this] {
+    watching_folder_ = false;
+    if (emitter_->glance() != glanced_)
+      feed(look_into_folder());
+    else
+      watch_folder();
+  });
 }
 
 void Session::carry_out(const mission::SetTimer& e) {

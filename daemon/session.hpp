@@ -87,6 +87,9 @@ class Session {
   void carry_out(const mission::Record& e);
   void judged(std::uint64_t request, std::uint64_t number, const world::ProcessResult& result);
   void plan_waiting();
+  [[nodiscard]] mission::FolderSeen look_into_folder();
+  void watch_folder();
+  [[nodiscard]] std::optional<Current> forecast_of_dive(const model::Surfacing& surfacing) const;
   void follow_mission();
   [[nodiscard]] verify::VerifyRequest verify_request(const mission::Verify& e) const;
   void note(RecordType type, const std::string& payload);
@@ -101,7 +104,9 @@ class Session {
   std::string name_;  ///< heard on this connection
   bool connected_{}, stepping_{}, mute_{};
   std::uint64_t bytes_{};
-  world::TimerId idle_timer_{};
+  world::TimerId idle_timer_{}, folder_timer_{};
+  bool watching_folder_{};
+  std::string glanced_;  ///< at the to-glider folder, when it was looked into last
   std::vector<decltype(mission::Event::what)> waiting_;
 
   std::shared_ptr<const ChartSource> chart_;

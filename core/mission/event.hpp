@@ -6,8 +6,10 @@
 #include <variant>
 #include <vector>
 
+#include "core/mission/delivery.hpp"
 #include "core/mission/mission.hpp"
 #include "core/model/surfacing.hpp"
+#include "core/ocean/corrected.hpp"
 #include "core/planning/planner.hpp"
 #include "core/safety/judge.hpp"
 
@@ -34,8 +36,12 @@ struct PlanningRequest {
   int max_waypoints{8};
   std::optional<Metres> list_radius;
   model::AtEnd at_end{model::AtEnd::loop};
-  Instant stamp;             ///< for the file's comment
-  Seconds horizon_wanted{};  ///< 0 = automatic: 3 × the still-water time
+  Instant stamp;                                     ///< for the file's comment
+  Seconds horizon_wanted{};                          ///< 0 = automatic: 3 × the still-water time
+  std::optional<ocean::LocalCorrection> correction;  ///< of the forecast, by the currents that the glider measured
+  /// A file of ours that still lies in to-glider: it is flown from this fix and given as the first candidate, its bytes
+  /// unchanged, so that the verifier judges it for this surfacing.
+  std::optional<QueuedFile> queued;
   friend bool operator==(const PlanningRequest&, const PlanningRequest&) = default;
 };
 
@@ -54,10 +60,12 @@ struct Candidate {
 
 // ---- events ---------------------------------------------------------------------------------------------------------
 
-/// A fix passed the rules that need no memory. `coast_distance`: negative inland; none without a coastline.
+/// A fix passed the rules that need no memory. `coast_distance`: negative inland; none without a coastline. `forecast`:
+/// the uncorrected forecast's mean along the dive that ended here (from `Pilot::dive_under_way`), none without.
 struct SurfacingHeard {
   model::Surfacing surfacing;
   std::optional<Metres> coast_distance;
+  std::optional<Current> forecast{};
   friend bool operator==(const SurfacingHeard&, const SurfacingHeard&) = default;
 };
 struct FixRefused {

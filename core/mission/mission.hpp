@@ -32,6 +32,9 @@ struct Currents {
   std::string east_variable, north_variable;  ///< empty: recognised
   std::optional<Instant> time_epoch;          ///< for files whose time axis has no units
   double coastal_fill_cells{1.5};
+  bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
+  Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …
+  Seconds correction_time{24 * 3600.0};  ///< correction_time_h: … and exp(−|t|/T)
   friend bool operator==(const Currents&, const Currents&) = default;
 };
 

@@ -8,6 +8,7 @@
 
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
+#include "core/mission/wording.hpp"
 
 namespace glidehelm::mission {
 
@@ -23,16 +24,6 @@ constexpr Seconds kSkewHeld{300};               // product.md 4, Clocks
 constexpr Seconds kSecondFixApart{60};          // trust.md I-5
 
 Tick later(Tick t, Seconds dt) { return t + std::chrono::duration_cast<Tick::duration>(dt); }
-
-/// A position as a pilot reads it: three decimals of a degree are 100 m.
-std::string place(GeoPoint p) { return fmt::format("{:.4f},{:.4f}", p.lat.degrees(), p.lon.degrees()); }
-
-std::string hours(Seconds t) {
-  const auto minutes = static_cast<long>(std::llround(t.count() / 60.0));
-  return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
-}
-
-std::string clock_text(Instant t) { return utc_text(t); }
 
 }  // namespace
 
@@ -58,7 +49,7 @@ std::string_view word(Stage stage) {
   return "?";
 }
 
-Pilot::Pilot(std::string glider) : glider_{std::move(glider)} {}
+Pilot::Pilot(std::string glider) : glider_{std::move(glider)} { set_mission(std::nullopt); }
 
 Effects Pilot::step(const Event& event) {
   now_ = event.now;
@@ -89,7 +80,7 @@ void Pilot::on(const SurfacingHeard& e) {
   if (stage_ != Stage::idle && is_same_surfacing(s)) {
     take_later_fix(s);
   } else {
-    open_surfacing(s);
+    open_surfacing(e);
   }
 }
 
@@ -184,7 +175,7 @@ void Pilot::take_repeat(const model::Surfacing& s) {
 /// The connection block may still print the initial current; the glider dives with the final one of the at-surface
 /// block. A plan for another current is aimed wrong by the difference times the stint.
 bool Pilot::plan_again_for_water(const model::Surfacing& s) {
-  const auto water = believed_current(s, rotation_.clockwise);
+  const auto water = believed_current(s, learned_.rotation.clockwise);
   if (!water || stage_ != Stage::planning || !mission_) return false;
   const double change =
       believed_ ? std::hypot(water->east.si() - believed_->east.si(), water->north.si() - believed_->north.si())
@@ -217,6 +208,8 @@ void Pilot::remember(const model::Surfacing& s) {
 
 /// What a block says beside the fix. A value once known is not lost when a later block leaves it out.
 void Pilot::note_dialog(const model::Surfacing& s) {
+  learn_more(s);
+  hear_waypoint(s);
   if (!s.segment.empty()) segment_ = s.segment;
   if (s.at_surface) {
     at_surface_seen_ = true;
@@ -228,14 +221,18 @@ void Pilot::note_dialog(const model::Surfacing& s) {
   if (s.until_diving) set_deadline(later(now_.tick, *s.until_diving));
 }
 
-void Pilot::open_surfacing(const model::Surfacing& s) {
+void Pilot::open_surfacing(const SurfacingHeard& e) {
+  const auto& s = e.surfacing;
   if (change_) take_over(*std::exchange(change_, std::nullopt));
   if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
+  begin_learning(e);
   key_ = fmt::format("{}/{}", glider_, clock_text(s.fix_taken));
   segment_.clear();
   dived_at_.reset();
   ++count_;
   at_surface_seen_ = mission_named_ = budget_over_ = planning_over_ = transfer_began_ = replacing_ = alerted_ = false;
+  waypoint_told_ = false;
+  file_.call_ended();
   wrong_mission_.clear();
   ranked_.clear();
   problem_.clear();
@@ -246,8 +243,7 @@ void Pilot::open_surfacing(const model::Surfacing& s) {
   if (late_said_) say(Level::clear, "late", "the glider called: all clear");
   late_said_ = false;
 
-  rotation_ = frame_rotation(mission_ ? mission_->frame_rotation : std::nullopt, s.magnetic_variation, s.fix);
-  believed_ = believed_current(s, rotation_.clockwise);
+  believed_ = believed_current(s, learned_.rotation.clockwise);
   const Seconds skew{std::abs(static_cast<double>(
       (s.curr_time.time_since_epoch() - std::chrono::floor<std::chrono::seconds>(s.heard.time_since_epoch()))
           .count()))};
@@ -256,13 +252,19 @@ void Pilot::open_surfacing(const model::Surfacing& s) {
     skew_ = fmt::format(
         "the glider's clock differs from ours by {:.0f} s; allowed are 300 s (clock_skew_ok: true accepts it)",
         skew.count());
-  greet(s, believed_);
+  greet(s);
   remember(s);
   record("surfacing", fmt::format("accepted fix {} taken {}", place(s.fix), clock_text(s.fix_taken)));
   set_deadline(later(now_.tick, mission_ ? mission_->window_max : Seconds{900}));
   note_dialog(s);
+  tell_learned();
   stage_ = Stage::planning;
   out_.push_back(InspectFolder{});
+  if (file_.in_folder())
+    tell_file("still-queued",
+              fmt::format("{} of the surfacing {} still lies in to-glider: it missed its call and is judged again",
+                          file_.file()->name, file_.file()->surfacing),
+              Level::note);
   if (!mission_) {
     keep("no-mission", "no mission is configured for this glider");
     return;
@@ -280,7 +282,7 @@ void Pilot::take_later_fix(const model::Surfacing& s) {
          fmt::format("later fix {} taken {}, {:.0f} m from the first", place(s.fix), clock_text(s.fix_taken), moved));
   if (stage_ == Stage::dived) return;
   note_dialog(s);
-  if (moved <= kMoveForReplacement || transfer_began_ || stage_ != Stage::queued) {
+  if (moved <= kMoveForReplacement || transfer_began_ || stage_ != Stage::queued || file_.state() != Delivery::queued) {
     emit_if_due();
     return;
   }
@@ -288,18 +290,6 @@ void Pilot::take_later_fix(const model::Surfacing& s) {
       fmt::format("the glider drifted {:.1f} km since the plan was made: planning again", moved / 1000));
   replacing_ = true;
   plan_again();
-}
-
-void Pilot::greet(const model::Surfacing& s, std::optional<Current> measured) {
-  std::string text = fmt::format("surfacing {}: fix {} taken {}", count_, place(s.fix), clock_text(s.fix_taken));
-  if (measured)
-    text += fmt::format(", measured current {:.2f} m/s towards {:03.0f} deg", measured->speed().si(),
-                        Course::of(measured->east.si(), measured->north.si()).degrees());
-  if (mission_) text += fmt::format(", {:.1f} km to the goal", distance(s.fix, mission_->goal).si() / 1000);
-  if (expected_place_)
-    text += fmt::format(", {:.1f} km from where it was expected", distance(*expected_place_, s.fix).si() / 1000);
-  say(Level::info, "surfacing", text);
-  arrive_if_there(s);
 }
 
 /// Inside the goal radius the mission has arrived; `after_goal` hands over at once, as often as the glider is there already.
@@ -313,7 +303,7 @@ void Pilot::arrive_if_there(const model::Surfacing& s) {
       return;
     }
     chain_.erase(chain_.begin());
-    mission_ = chain_.front().mission;
+    set_mission(chain_.front().mission);
     record("mission", fmt::format("{} takes over", mission_->name));
     say(Level::info, "mission", fmt::format("mission {} takes over: goal {}", mission_->name, place(mission_->goal)));
   }
@@ -350,14 +340,6 @@ void Pilot::on(const DiveBegan&) {
   say(Level::info, "dived", "the glider goes under");
 }
 
-void Pilot::on(const TransferHeard& e) {
-  if (mission_ && !lower(e.file).ends_with(fmt::format("goto_l{:02}.ma", mission_->slot))) return;
-  transfer_began_ = true;
-  say(Level::info, "transfer", e.ended ? "the file went to the glider" : "the file is going to the glider");
-}
-
-void Pilot::on(const ListReread&) { say(Level::info, "reread", "the glider reads its lists again"); }
-
 // ---- answering ------------------------------------------------------------------------------------------------------
 
 planning::Problem Pilot::problem_now() const {
@@ -365,9 +347,17 @@ planning::Problem Pilot::problem_now() const {
   planning::Problem p;
   p.start = {last_->fix, epoch_seconds(last_->fix_taken)};
   p.goal = planning::PointGoal{m.goal, m.goal_radius};
-  p.glider = {glider_,      m.horizontal_speed, last_->believed_speed.value_or(m.horizontal_speed),      m.glide_angle,
-              m.dive_depth, m.climb_to,         last_->current_correction.value_or(m.current_correction)};
-  p.schedule = {m.stint, m.first_stint, m.surface, m.surface};
+  p.glider.name = glider_;
+  p.glider.horizontal_speed = in_use_.speed;
+  p.glider.believed_speed = in_use_.believed_speed;
+  p.glider.glide_angle = m.glide_angle;
+  p.glider.dive_depth = m.dive_depth;
+  p.glider.climb_to = m.climb_to;
+  p.glider.current_correction = seen_.at.current_correction.value_or(m.current_correction);
+  p.glider.heading_bias = in_use_.heading_bias;
+  // The configured first stint is the first of the mission; all others are as long as they were found to be.
+  const bool first = count_ == 1 && m.first_stint != m.stint;
+  p.schedule = {in_use_.stint, first ? m.first_stint : in_use_.stint, in_use_.surface, in_use_.surface};
   p.believed_current = believed_;
   p.coast_margin = m.min_distance_to_coast;
   p.headings = m.headings;
@@ -379,6 +369,8 @@ planning::Problem Pilot::problem_now() const {
 void Pilot::begin_planning() {
   ++request_;
   planned_from_ = last_->fix;
+  in_use_ = learned_;
+  in_use_.believed_speed = seen_.at.believed_speed.value_or(learned_.believed_speed);
   PlanningRequest request;
   request.id = request_;
   request.surfacing = key_;
@@ -391,6 +383,8 @@ void Pilot::begin_planning() {
   request.at_end = mission_->at_end;
   request.stamp = now_.utc;
   request.horizon_wanted = mission_->horizon.value_or(Seconds{0});
+  request.correction = in_use_.correction;
+  if (file_.in_folder()) request.queued = file_.file();
   out_.push_back(BeginPlanning{std::move(request)});
   set_timer(Timer::budget, later(first_heard_, mission_->budget));
 }
@@ -426,6 +420,16 @@ void Pilot::ask_verdict() {
   }
 }
 
+namespace {
+/// The tail is flown with two standard deviations of what is learned, where that is more than the rule's usual share.
+void widen_tail(safety::Rules& rules, const Learned& known) {
+  const double stint = known.stint_spread / known.stint, speed = known.speed_spread.si() / known.speed.si();
+  rules.tail_stint = std::clamp(2 * stint, rules.tail_stint, 0.25);
+  rules.tail_slower = std::clamp(2 * speed, rules.tail_slower, 0.4);
+  rules.tail_faster = std::clamp(2 * speed, rules.tail_faster, 0.3);
+}
+}  // namespace
+
 safety::Dossier Pilot::dossier_for(const Candidate& c) const {
   const auto problem = problem_now();
   safety::Dossier d;
@@ -438,12 +442,14 @@ safety::Dossier Pilot::dossier_for(const Candidate& c) const {
   d.glider = problem.glider;
   d.believed_current = believed_;
   d.schedule = problem.schedule;
+  d.correction = in_use_.correction;
   d.fix_s = problem.start.fix_s;
   d.horizon_s = c.horizon_s;
   d.rules.coast_margin = mission_->min_distance_to_coast;
   d.rules.max_waypoints = mission_->max_waypoints;
   d.rules.slot = mission_->slot;
   d.rules.max_wpt_distance = mission_->max_wpt_distance;
+  widen_tail(d.rules, in_use_);
   d.promise = c.promise;
   d.judged_s = epoch_seconds(now_.utc);
   d.deadline_s = d.judged_s + Seconds{deadline_ - now_.tick}.count();
@@ -471,18 +477,22 @@ void Pilot::on(const Judged& e) {
       for (const auto& margin : e.verdict->margins)
         if (!margin.holds) why += (why.empty() ? "" : "; ") + margin.rule + ": " + margin.message;
     if (why.empty()) why = "the verdict is for other bytes";
-    problem_ = why;
     record("verdict", fmt::format("candidate {} of {} refused: {}", e.number, ranked->candidate.plan.method, why));
-    say(Level::alert, "refused-file",
-        fmt::format("the verifier refuses the {} plan: {}", ranked->candidate.plan.method, why));
+    if (is_queued_file(ranked->candidate)) {
+      say(Level::note, "still-queued", "the file that still lies in to-glider is not safe from here: " + why);
+    } else {
+      problem_ = why;
+      say(Level::alert, "refused-file",
+          fmt::format("the verifier refuses the {} plan: {}", ranked->candidate.plan.method, why));
+    }
   }
   ask_verdict();
   emit_if_due();
 }
 
 Pilot::Ranked* Pilot::best_proven() {
-  for (auto r = ranked_.rbegin(); r != ranked_.rend(); ++r)
-    if (r->proof == Ranked::Proof::accepted) return &*r;
+  for (auto r = ranked_.rbegin(); r != ranked_.rend(); ++r)  // a queued file that was taken meanwhile is no choice
+    if (r->proof == Ranked::Proof::accepted && (!is_queued_file(r->candidate) || file_.in_folder())) return &*r;
   return nullptr;
 }
 
@@ -517,6 +527,10 @@ void Pilot::emit_if_due() {
     return;
   }
   if (stage_ == Stage::proposed) return;
+  if (is_queued_file(best->candidate)) {
+    keep_queued_file();
+    return;
+  }
   const auto& plan = best->candidate.plan;
   const std::string arrival =
       arrived_ ? "holding at the goal"
@@ -537,8 +551,9 @@ void Pilot::emit_if_due() {
   stage_ = Stage::emitting;
   say(Level::info, "plan",
       fmt::format("plan by {}: {}, next surfacing expected {} at {}, {:.0f} s left in the window", plan.method, arrival,
-                  clock_text(after(last_->fix_taken, mission_->surface + mission_->stint)),
+                  clock_text(after(last_->fix_taken, learned_.surface + learned_.stint)),
                   place(best->candidate.promise.next_surfacing), Seconds{deadline_ - now_.tick}.count()));
+  emitting_ = QueuedFile{key_, best->candidate.file_name, best->candidate.file_bytes, best->candidate.list};
   out_.push_back(Emit{*best->file, key_, fmt::format("{}#{}", key_, request_), deadline_, replacing_});
 }
 
@@ -550,6 +565,7 @@ void Pilot::on(const EmissionEnded& e) {
     case Outcome::queued:
       stage_ = Stage::queued;
       say(Level::info, "queued", e.detail);
+      note_exchange();
       expect_next();
       return;
     case Outcome::foreign_file:
@@ -569,24 +585,13 @@ void Pilot::on(const EmissionEnded& e) {
   }
 }
 
-void Pilot::on(const FolderSeen& e) {
-  if (stage_ == Stage::idle || stage_ == Stage::dived || stage_ == Stage::stood_down) return;
-  if (e.found == FolderSeen::Found::foreign) {
-    if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
-    stage_ = Stage::stood_down;
-    record("keep", "foreign file: " + e.detail);
-    say(Level::alert, "foreign-file", "standing down for this surfacing: " + e.detail);
-  } else if (e.found == FolderSeen::Found::unreadable) {
-    say(Level::alert, "folder", "the to-glider folder cannot be read: " + e.detail);
-  }
-}
-
 /// Nothing is emitted for this surfacing. The glider restarts its list at w_1, and the operator hears why.
 void Pilot::keep(const std::string& code, const std::string& why) {
   stage_ = Stage::kept;
   record("keep", why);
   say(Level::alert, code,
       fmt::format("nothing is emitted: {}. The glider keeps its list and starts it again at its first waypoint", why));
+  warn_of_queued_file();
   expect_next();
 }
 
@@ -594,9 +599,8 @@ void Pilot::keep(const std::string& code, const std::string& why) {
 
 void Pilot::expect_next() {
   if (!mission_ || !last_) return;
-  expected_place_.reset();
-  if (const Ranked* best = best_proven()) expected_place_ = best->candidate.promise.next_surfacing;
-  const Seconds interval = mission_->surface + mission_->stint;
+  expect_place();
+  const Seconds interval = learned_.surface + learned_.stint;
   expected_s_ = epoch_seconds(last_->fix_taken) + interval.count();
   const Tick expected = later(now_.tick, Seconds{*expected_s_ - epoch_seconds(now_.utc)});
   set_timer(Timer::late_note, later(expected, 0.1 * interval));
@@ -665,8 +669,7 @@ void Pilot::on(const MissionChanged& e) {
 
 void Pilot::take_over(const MissionChanged& change) {
   chain_ = change.chain;
-  mission_.reset();
-  if (!chain_.empty()) mission_ = chain_.front().mission;
+  set_mission(chain_.empty() ? std::nullopt : std::optional{chain_.front().mission});
   skew_ok_ = change.clock_skew_ok;
   arrived_ = false;
 }

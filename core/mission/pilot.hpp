@@ -30,6 +30,9 @@ std::string_view word(Stage stage);
 /// own, still queued file apart); nothing is emitted unless a verifier accepted those bytes for the surfacing that is
 /// current, before the deadline, after the at-surface block named the mission (unless emit_on: connection); a human's
 /// file makes it stand down; every refusal and every `keep` says why.
+///
+/// What surfacings teach (`Learning`) is part of the value, and so is how far the last file has come (`FileOnItsWay`). A
+/// plan and its verdict use what was known when the plan began.
 class Pilot {
  public:
   explicit Pilot(std::string glider);
@@ -44,6 +47,14 @@ class Pilot {
   [[nodiscard]] const std::optional<Mission>& mission() const { return mission_; }
   /// True while a planning answer, a verdict or an emission is awaited: the daemon is not quiescent.
   [[nodiscard]] bool awaits_answer() const;
+  /// What plan, watch and margins use now.
+  [[nodiscard]] const Learned& learned() const { return learned_; }
+  /// The file that was emitted last, and how far it has come.
+  [[nodiscard]] const FileOnItsWay& file() const { return file_; }
+  /// The dive that the next surfacing ends, for the forecast's mean along it; none before the first surfacing.
+  [[nodiscard]] std::optional<Dive> dive_under_way() const;
+  /// A window is open or a file of ours is queued: the folder must be looked at every second.
+  [[nodiscard]] bool watches_folder() const;
 
  private:
   struct Ranked {
@@ -76,10 +87,25 @@ class Pilot {
   void take_repeat(const model::Surfacing& s);
   [[nodiscard]] bool plan_again_for_water(const model::Surfacing& s);
   void plan_again();
-  void open_surfacing(const model::Surfacing& s);
+  void open_surfacing(const SurfacingHeard& e);
   void take_later_fix(const model::Surfacing& s);
   void note_dialog(const model::Surfacing& s);
   void remember(const model::Surfacing& s);
+
+  // learning (pilot_learning.cpp)
+  void begin_learning(const SurfacingHeard& e);
+  void learn_more(const model::Surfacing& s);
+  void learn();
+  void tell_learned();
+  void set_mission(std::optional<Mission> mission);
+
+  // after the emission (pilot_delivery.cpp)
+  void hear_waypoint(const model::Surfacing& s);
+  void tell_file(const std::string& code, const std::string& text, Level level = Level::info);
+  [[nodiscard]] bool is_queued_file(const Candidate& candidate) const;
+  void keep_queued_file();
+  void warn_of_queued_file();
+  void note_exchange();
 
   // answering it
   void begin_planning();
@@ -94,7 +120,10 @@ class Pilot {
   void expect_next();
   void take_over(const MissionChanged& change);
   void arrive_if_there(const model::Surfacing& s);
-  void greet(const model::Surfacing& s, std::optional<Current> measured);
+  void greet(const model::Surfacing& s);
+  [[nodiscard]] std::string compared_with_expected(const model::Surfacing& s);
+  void expect_place();
+  [[nodiscard]] std::string measured_text() const;
 
   // saying
   void say(Level level, std::string code, std::string text);
@@ -117,7 +146,11 @@ class Pilot {
   std::optional<model::Surfacing> quarantined_;  ///< a jump that waits for a second fix to agree (S5)
   std::optional<Instant> dived_at_;              ///< when the dialog last said that the glider goes under
   std::optional<Current> believed_;              ///< measured DAC, true frame
-  FrameRotation rotation_{};
+  Learning learning_before_, learning_;          ///< before the surfacing that is open, and with it
+  SurfacingSeen seen_;                           ///< the surfacing that is open or was the last
+  Learned learned_, in_use_;                     ///< now, and as the current plan began
+  Learned told_;                                 ///< as last said to the operator
+  bool contradiction_told_{};
   int count_{};  ///< surfacings accepted
   bool arrived_{};
 
@@ -137,8 +170,18 @@ class Pilot {
   std::optional<model::Refusal> refused_;  ///< the last one, so that its reprints are not said again
   std::optional<std::string> skew_;
 
+  // the file that was emitted last
+  FileOnItsWay file_;
+  std::optional<QueuedFile> emitting_;
+  bool waypoint_told_{};
+
   // what was promised for the next one
-  std::optional<GeoPoint> expected_place_;
+  struct Expectation {
+    GeoPoint at;
+    Heading heading;
+    double along{}, across{};  ///< standard deviations, metres, along and across the heading
+  };
+  std::optional<Expectation> expected_;
   std::optional<double> expected_s_;
   bool late_said_{};
 

@@ -17,6 +17,7 @@ struct Glider {
   Metres dive_depth{200};                  ///< lower turning depth of the yo
   Metres climb_to{20};                     ///< upper turning depth of inner yos
   int current_correction{1};               ///< u_use_current_correction: 0 ignores currents, 1 uses the last measured
+  Radians heading_bias{};                  ///< true heading less the one that the glider means to steer, clockwise
   friend bool operator==(const Glider&, const Glider&) = default;
 };
 

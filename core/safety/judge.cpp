@@ -4,7 +4,10 @@
 
 namespace glidehelm::safety {
 
-Verdict judge(const Dossier& dossier, ocean::FieldRef full, const chart::Chart& chart) {
+Verdict judge(const Dossier& dossier, ocean::FieldRef forecast, const chart::Chart& chart) {
+  std::optional<ocean::CorrectedField> corrected;
+  if (dossier.correction && dossier.correction->plausible()) corrected.emplace(forecast, *dossier.correction);
+  const ocean::FieldRef full = corrected ? ocean::FieldRef{*corrected} : forecast;
   const auto list = read_list(dossier.file_bytes, dossier.rules.max_waypoints);
   std::string why;
   std::optional<Flight> flight;

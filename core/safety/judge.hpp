@@ -12,7 +12,7 @@
 #include "core/model/glider.hpp"
 #include "core/model/surfacing.hpp"
 #include "core/model/waypoint_list.hpp"
-#include "core/ocean/field.hpp"
+#include "core/ocean/corrected.hpp"
 
 /// Judges bytes. Knows no planner: its own reader of goto lists, its own integrator of the glider's law.
 namespace glidehelm::safety {
@@ -26,6 +26,8 @@ struct Rules {
   double arrival_tolerance{0.02};          ///< re-flown against promised arrival, of the travel time
   double surfacing_tolerance{0.03};        ///< next surfacing against the promise, of the stint's length
   MetresPerSecond refused_speed{5.0};
+  /// What the tail is flown with ("2 tail"): shares by which stints may be shorter or longer, the glider slower or faster.
+  double tail_stint{0.05}, tail_slower{0.10}, tail_faster{0.05};
   friend bool operator==(const Rules&, const Rules&) = default;
 };
 
@@ -53,8 +55,9 @@ struct Dossier {
   model::Glider glider;
   std::optional<Current> believed_current;  ///< ĉ for the first stint (correction 1): the measured DAC, true frame
   model::DiveSchedule schedule;
-  double fix_s{};      ///< epoch second of the fix
-  double horizon_s{};  ///< epoch second to which the list is re-flown at most
+  std::optional<ocean::LocalCorrection> correction;  ///< of the currents that the list is flown in
+  double fix_s{};                                    ///< epoch second of the fix
+  double horizon_s{};                                ///< epoch second to which the list is re-flown at most
   Rules rules;
   Promise promise;
   double judged_s{}, deadline_s{};  ///< epoch seconds: when this is judged, and when it is too late

@@ -184,9 +184,10 @@ class Flyer {
     const double heading =
         steered_heading(aim.departing.from_north().si(), believed, order_.glider.believed_speed.si());
     const double east = std::sin(heading), north = std::cos(heading);
+    const double truly = heading + order_.glider.heading_bias.si();
     const double u = order_.glider.horizontal_speed.si(), u_believed = order_.glider.believed_speed.si();
     return Motion{*c,
-                  {u * east + c->east, u * north + c->north},
+                  {u * std::sin(truly) + c->east, u * std::cos(truly) + c->north},
                   {u_believed * east + believed.east.si(), u_believed * north + believed.north.si()},
                   {aim.length.si() * aim.departing.east(), aim.length.si() * aim.departing.north()}};
   }

@@ -69,9 +69,8 @@ inline constexpr double kStep = 60.0;
 /// Flies the list by the law of product.md 6 ("From headings to waypoints"), written here a second time on purpose:
 ///
 ///  - Drift on the surface for `drift_before(k)` with the current at depth 0, then dive for `stint_length(k)`.
-///  - Under water the true position moves with U·h + c at the depth of the yo (`yo_depth`); the dead-reckoned one
-///  starts
-///    at the true dive point and moves with Û·h + ĉ. Heading h = bearing − asin(cross/Û), where the bearing is the
+///  - Under water the true position moves with U·h' + c at the depth of the yo (`yo_depth`), h' being h turned by the
+///    heading bias; the dead-reckoned one starts at the true dive point and moves with Û·h + ĉ. Heading h = bearing − asin(cross/Û), where the bearing is the
 ///    geodesic's at the dead-reckoned position and cross the part of ĉ to the right of it; |cross| ≥ Û steers square.
 ///  - A waypoint is hit when the dead-reckoned distance falls below `radius`; the next one follows, after the last the
 ///    first (loop), or the flight ends (wait: heading idle). A list of one point keeps steering to it. The instant is

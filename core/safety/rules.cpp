@@ -355,6 +355,12 @@ bool can_be_flown(const Dossier& d, std::string& why) {
       {"surfacing tolerance", d.rules.surfacing_tolerance, 0.0, 1.0},
       {"refused speed", d.rules.refused_speed.si(), 0.0, 5.0},
       {"most waypoints", static_cast<double>(d.rules.max_waypoints), 1.0, 50.0},
+      {"heading bias", in_degrees(d.glider.heading_bias), -45.0, 45.0},
+      {"correction of the forecast", d.correction ? d.correction->added.speed().si() : 0.0, 0.0,
+       d.correction && !d.correction->plausible() ? -1.0 : ocean::LocalCorrection::kStrongest},
+      {"tail's stints", d.rules.tail_stint, 0.0, 0.5},
+      {"tail's slower speed", d.rules.tail_slower, 0.0, 0.6},
+      {"tail's faster speed", d.rules.tail_faster, 0.0, 0.5},
   };
   for (const auto& b : bounds)
     if (!(b.value >= b.low && b.value <= b.high)) {

@@ -163,9 +163,11 @@ Margin judge_tail(const Evidence& e) {
   m.found = chart::Chart::kHorizon;
   m.limit = 0;
   m.unit = "m";
-  m.message = "with the stint 5 % shorter or longer and the speed 10 % lower or 5 % higher";
-  for (const double length : {0.95, 1.05}) {
-    for (const double speed : {0.90, 1.05}) {
+  const auto& rules = e.dossier.rules;
+  m.message = sentence("with the stint %.0f %% shorter or longer and the speed %.0f %% lower or %.0f %% higher",
+                       100 * rules.tail_stint, 100 * rules.tail_slower, 100 * rules.tail_faster);
+  for (const double length : {1 - rules.tail_stint, 1 + rules.tail_stint}) {
+    for (const double speed : {1 - rules.tail_slower, 1 + rules.tail_faster}) {
       FlightOrder order = order_for(e.dossier, *e.list);
       order.schedule.stint *= length;
       order.schedule.first_stint *= length;

@@ -53,12 +53,13 @@ class Dive {
     while (until - here_.t_s > kNoMoreTime) {
       const Vector aim = next_aim(points, target, loops);
       const double heading = steered_heading(std::atan2(aim.east, aim.north), believed_, flight_.glider.believed_speed);
-      if (first) flown.first_heading = Heading{Radians{heading}};
+      const double truly = heading + flight_.glider.heading_bias.si();
+      if (first) flown.first_heading = Heading{Radians{truly}};
       first = false;
       const Vector reckoned{u_hat * std::sin(heading) + believed_.east.si(),
                             u_hat * std::cos(heading) + believed_.north.si()};
       const double dt = std::min({kStep, until - here_.t_s, until_ring(aim, reckoned)});
-      if (!step(heading, dt)) break;
+      if (!step(truly, dt)) break;
       reckon(reckoned, dt);
     }
     motion_.end = here_;

@@ -10,7 +10,7 @@ namespace glidehelm::vehicle {
 /// What a dive did.
 struct DiveFlown {
   Motion motion;
-  Heading first_heading;  ///< at the dive
+  Heading first_heading;  ///< at the dive, the true one
 };
 
 /// Heading = bearing − asin(cross/Û), where cross is the part of the believed current to the right of the bearing.
@@ -19,7 +19,8 @@ double steered_heading(double bearing, Current believed, MetresPerSecond believe
 
 /// Flies from `from` for `seconds` by the law of product.md 6 (slocum.md 4.4).
 ///
-/// The dead-reckoned position starts at the true dive point and moves with Û·h + ĉ, the true one with U·h + c. Each step
+/// The dead-reckoned position starts at the true dive point and moves with Û·h + ĉ, the true one with U·h' + c, where h'
+/// is h turned by the glider's heading bias. Each step
 /// takes its heading from the dead-reckoned bearing to `points[target]`; when the dead-reckoned distance is below
 /// `radius` the next point is the target (the first one after the last if `loops`; else, and with a single point, the
 /// glider keeps steering to the one it has). A step that would come into the ring ends a hundredth of a second inside.

@@ -181,19 +181,20 @@ double early_share(int current_correction) { return current_correction == 1 ? 0.
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
               Metres radius, Metres drifted) {
   const double u = glider.believed_speed.si();
-  double east = u * wanted.east(), north = u * wanted.north();
+  const Heading meant = wanted + -glider.heading_bias;  // what the glider must mean to steer
+  double east = u * meant.east(), north = u * meant.north();
   if (glider.current_correction == 1) {
     east += believed.east.si();
     north += believed.north.si();
   }
   const double speed = std::hypot(east, north);
-  const bool against = wanted.east() * east + wanted.north() * north < 0;
+  const bool against = meant.east() * east + meant.north() * north < 0;
   Aim aim;
   aim.length = (1 - early_share(glider.current_correction)) * speed * seconds + radius.si();
   const double shortest = std::max(2 * radius.si(), kShortestLeg) + drifted.si();
   aim.ends_list = against || aim.length < shortest;
   aim.length = std::max(aim.length, shortest);
-  auto direction = speed > 1e-9 ? Bearing::of(east, north) : Bearing{wanted.from_north()};
+  auto direction = speed > 1e-9 ? Bearing::of(east, north) : Bearing{meant.from_north()};
   if (against) direction = direction + Radians{kPi};
   aim.at = destination(dive, direction, Metres{aim.length});
   return aim;

@@ -53,7 +53,8 @@ struct Aim {
 };
 /// w for a heading wanted from `dive` for `seconds`. A leg shorter than max(2r, 500 m), plus the metres `drifted` since the
 /// surfacing before so that it is as long for a glider that dives at once, is lengthened to that and ends the list; so does sign −1, for which the law holds h only towards a waypoint up-current. The believed current counts with
-/// correction 1 only. Where g is null the wanted heading serves as its direction.
+/// correction 1 only. Where g is null the wanted heading serves as its direction. With a heading bias h is the heading that the
+/// glider must mean to steer, the wanted one turned back.
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
               Metres radius, Metres drifted = Metres{0});
 

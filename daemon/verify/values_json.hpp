@@ -216,7 +216,7 @@ template <class F>
 void members(model::Glider& g, F&& f) {
   f("name", g.name), f("horizontal_speed_m_per_s", g.horizontal_speed), f("believed_speed_m_per_s", g.believed_speed);
   f("glide_angle_rad", g.glide_angle), f("dive_depth_m", g.dive_depth), f("climb_to_m", g.climb_to);
-  f("current_correction", g.current_correction);
+  f("current_correction", g.current_correction), f("heading_bias_rad", g.heading_bias);
 }
 template <class F>
 void members(model::DiveSchedule& s, F&& f) {
@@ -232,6 +232,7 @@ void members(safety::Rules& r, F&& f) {
   f("coast_margin_m", r.coast_margin), f("max_waypoints", r.max_waypoints), f("slot", r.slot);
   f("max_wpt_distance_m", r.max_wpt_distance), f("arrival_tolerance", r.arrival_tolerance);
   f("surfacing_tolerance", r.surfacing_tolerance), f("refused_speed_m_per_s", r.refused_speed);
+  f("tail_stint", r.tail_stint), f("tail_slower", r.tail_slower), f("tail_faster", r.tail_faster);
 }
 template <class F>
 void members(safety::Promise& p, F&& f) {
@@ -240,11 +241,16 @@ void members(safety::Promise& p, F&& f) {
   f("goal_radius_m", p.goal_radius), f("radius_m", p.radius), f("at_end", p.at_end);
 }
 template <class F>
+void members(ocean::LocalCorrection& c, F&& f) {
+  f("at", c.at), f("at_s", c.at_s), f("added", c.added), f("spread_m_per_s", c.spread), f("length_m", c.length),
+      f("time_s", c.time);
+}
+template <class F>
 void members(safety::Dossier& d, F&& f) {
   f("file_name", d.file_name), f("file_bytes", d.file_bytes), f("glider_expected", d.glider_expected), f("at", d.at);
   f("current_surfacing", d.current_surfacing), f("answers_surfacing", d.answers_surfacing), f("glider", d.glider);
-  f("believed_current", d.believed_current), f("schedule", d.schedule), f("fix_s", d.fix_s),
-      f("horizon_s", d.horizon_s);
+  f("believed_current", d.believed_current), f("schedule", d.schedule), f("correction", d.correction),
+      f("fix_s", d.fix_s), f("horizon_s", d.horizon_s);
   f("rules", d.rules), f("promise", d.promise), f("judged_s", d.judged_s), f("deadline_s", d.deadline_s);
 }
 template <class F>

@@ -1,0 +1,179 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/mission/pilot.hpp"
+#include "core/mission/wording.hpp"
+
+// What the pilot learns from surfacings, and what it expects of the next one.
+namespace glidehelm::mission {
+
+namespace {
+
+constexpr double kPostFix = 60.0;        // s: from the resumed mission to the dive (slocum.md 4.6)
+constexpr double kFarOff = 3.0;          // standard deviations
+constexpr double kLeastFarOff = 1000.0;  // m
+constexpr double kForecastError = 0.10;  // m/s: of a forecast that nothing was measured against
+constexpr double kTold = 0.02;           // a change of speed or times by this share is said
+constexpr double kToldTurn = 1.0;        // degrees
+
+bool differs(double a, double b) { return std::abs(a - b) > kTold * std::abs(b); }
+
+}  // namespace
+
+void Pilot::set_mission(std::optional<Mission> mission) {
+  mission_ = std::move(mission);
+  const Mission guesses = mission_.value_or(Mission{});
+  learning_.configure(guesses);
+  learning_before_.configure(guesses);
+  learned_ = learning_.learned();
+}
+
+std::optional<Dive> Pilot::dive_under_way() const {
+  if (!last_) return std::nullopt;
+  Dive dive;
+  dive.from = last_->fix;
+  dive.from_s =
+      dived_at_ ? epoch_seconds(*dived_at_) + kPostFix : epoch_seconds(last_->fix_taken) + learned_.surface.count();
+  for (const auto& ranked : ranked_) {  // the drift is the same in every plan of this surfacing
+    if (ranked.candidate.plan.stints.empty()) continue;
+    dive.from = ranked.candidate.plan.stints.front().dive;
+    dive.drift_known = true;
+  }
+  return dive;
+}
+
+void Pilot::begin_learning(const SurfacingHeard& e) {
+  SurfacingSeen seen;
+  if (last_) seen.before = seen_.at;
+  seen.dive_said = dived_at_;
+  seen.dive = dive_under_way();
+  seen.forecast = e.forecast;
+  seen.at = e.surfacing;
+  learning_before_ = learning_;
+  seen_ = std::move(seen);
+  learn_more(e.surfacing);
+}
+
+/// A later block of the same surfacing: values that it leaves out stay, and a final current is not replaced by an
+/// initial one.
+void Pilot::learn_more(const model::Surfacing& s) {
+  auto& known = seen_.at;
+  if (s.water && (s.water_is_final || !known.water_is_final)) {
+    known.water = s.water;
+    known.water_is_final = s.water_is_final;
+  }
+  if (!s.mission.empty()) known.mission = s.mission;
+  if (!s.segment.empty()) known.segment = s.segment;
+  if (s.believed_speed) known.believed_speed = s.believed_speed;
+  if (s.current_correction) known.current_correction = s.current_correction;
+  if (s.magnetic_variation) known.magnetic_variation = s.magnetic_variation;
+  const auto same = [&](const model::AimLine& aim) { return aim.at == s.aim->at; };
+  if (s.aim && std::none_of(seen_.aims.begin(), seen_.aims.end(), same)) {
+    seen_.aims.push_back(*s.aim);
+    seen_.aims_from.push_back(s.fix);
+  }
+  learn();
+}
+
+/// From what was known before this surfacing and all that it has said: later blocks replace, they do not add.
+void Pilot::learn() {
+  learning_ = learning_before_;
+  learning_.see(seen_);
+  learned_ = learning_.learned();
+}
+
+/// Says what changed so much that a pilot would want to know.
+void Pilot::tell_learned() {
+  const bool first = told_.stint.count() == 0;
+  const auto& now = learned_;
+  const double turned = std::abs(in_degrees(wrapped(now.rotation.clockwise - told_.rotation.clockwise)));
+  if (first || now.rotation.from != told_.rotation.from || turned > kToldTurn) {
+    if (!first || now.rotation.from != FrameRotation::From::assumed_zero)
+      say(Level::info, "frame",
+          fmt::format("the glider's frame is turned {:+.1f} deg (to within {:.1f}), {}",
+                      in_degrees(now.rotation.clockwise), in_degrees(now.rotation.spread), word(now.rotation.from)));
+    told_.rotation = now.rotation;
+  }
+  if (const auto lines = learning_.contradicted(); lines && !contradiction_told_) {
+    contradiction_told_ = true;
+    say(Level::note, "frame",
+        fmt::format("the Waypoint: lines say that the frame is turned {:+.1f} deg, configured are {:+.1f}: the "
+                    "configured value is used",
+                    in_degrees(*lines), in_degrees(now.rotation.clockwise)));
+  }
+  const bool times =
+      differs(now.stint.count(), told_.stint.count()) || differs(now.surface.count(), told_.surface.count());
+  if (times && !first)
+    say(Level::info, "learned",
+        fmt::format("stints take {} (to within {:.0f} min), the surface interval {:.0f} min", hours(now.stint),
+                    now.stint_spread.count() / 60, now.surface.count() / 60));
+  const bool speed = differs(now.speed.si(), told_.speed.si()) ||
+                     std::abs(in_degrees(now.heading_bias - told_.heading_bias)) > kToldTurn;
+  if (speed && !first)
+    say(Level::info, "learned",
+        fmt::format("speed through water {:.3f} m/s (to within {:.3f}), heading off by {:+.1f} deg (to within {:.1f})",
+                    now.speed.si(), now.speed_spread.si(), in_degrees(now.heading_bias),
+                    in_degrees(now.heading_bias_spread)));
+  if (times || first) told_.stint = now.stint, told_.surface = now.surface;
+  if (speed || first) told_.speed = now.speed, told_.heading_bias = now.heading_bias;
+}
+
+// ---- what is expected -----------------------------------------------------------------------------------------------
+
+/// Where the next surfacing is promised, and how far off it may be: error of the forecast, speed, heading and length of
+/// the stint, each over the stint.
+void Pilot::expect_place() {
+  expected_.reset();
+  const Ranked* best = best_proven();
+  if (best == nullptr) return;
+  const double t = learned_.stint.count(), u = learned_.speed.si();
+  const double current = learned_.correction ? learned_.correction->spread.si() : kForecastError;
+  Expectation e;
+  e.at = best->candidate.promise.next_surfacing;
+  const auto& stints = best->candidate.plan.stints;
+  e.heading = stints.empty() ? Heading{last_ ? geodesic(last_->fix, e.at).departing.from_north() : Radians{}}
+                             : stints.front().heading;
+  e.along = std::hypot(t * current, std::hypot(t * learned_.speed_spread.si(), u * learned_.stint_spread.count()));
+  e.across = std::hypot(t * current, t * u * learned_.heading_bias_spread.si());
+  expected_ = e;
+}
+
+/// How far a fix is from where it was expected; one that is far off raises an alert when the glider flew our list.
+std::string Pilot::compared_with_expected(const model::Surfacing& s) {
+  if (!expected_) return "";
+  const auto off = geodesic(expected_->at, s.fix);
+  const Radians turn = off.departing + Radians{-expected_->heading.from_north().si()} - Bearing{};
+  const double along = off.length.si() * std::cos(turn.si()), across = off.length.si() * std::sin(turn.si());
+  const double sigmas = std::hypot(along / expected_->along, across / expected_->across);
+  if (sigmas > kFarOff && off.length.si() > kLeastFarOff && file_.state() == Delivery::flying)
+    say(Level::alert, "far-off",
+        fmt::format("the glider came up {:.1f} km from where it was expected, {:.1f} standard deviations away",
+                    off.length.si() / 1000, sigmas));
+  return fmt::format(", {:.1f} km from where it was expected (to within {:.1f} km along its way and {:.1f} km across)",
+                     off.length.si() / 1000, expected_->along / 1000, expected_->across / 1000);
+}
+
+/// What the glider measured, as it believes it; marked where nothing is learned from it.
+std::string Pilot::measured_text() const {
+  if (!believed_) return "";
+  std::string text = fmt::format(", measured current {:.2f} m/s towards {:03.0f} deg", believed_->speed().si(),
+                                 Course::of(believed_->east.si(), believed_->north.si()).degrees());
+  if (!learned_.water)
+    text += " (the first of its mission: not learned from)";
+  else if (!learned_.water->final_value)
+    text += " (initial)";
+  return text;
+}
+
+void Pilot::greet(const model::Surfacing& s) {
+  std::string text = fmt::format("surfacing {}: fix {} taken {}", count_, place(s.fix), clock_text(s.fix_taken));
+  text += measured_text();
+  if (mission_) text += fmt::format(", {:.1f} km to the goal", distance(s.fix, mission_->goal).si() / 1000);
+  text += compared_with_expected(s);
+  say(Level::info, "surfacing", text);
+  arrive_if_there(s);
+}
+
+}  // namespace glidehelm::mission

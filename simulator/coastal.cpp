@@ -28,6 +28,7 @@ CoastalField::CoastalField(const CoastalSpec& spec, Variant variant)
   coverage_.east = degrees(spec.east_deg).si();
   width_m_ = (coverage_.east - coverage_.west) * metric_.parallel_radius;
   height_m_ = (coverage_.north - coverage_.south) * metric_.meridian_radius;
+  fading_m_ = spec.fading_m;
   const auto from = plane(spec.from), to = plane(spec.to);
   const double length = std::hypot(to.east - from.east, to.north - from.north);
   from_x_ = from.east;
@@ -122,10 +123,15 @@ Offset CoastalField::flow(double x, double y, double t_s) const {
   return {u, v};
 }
 
-Expected<ocean::Sample, ocean::NoCurrent> CoastalField::sample(GeoPoint p, Depth, double t_s) const {
+Expected<ocean::Sample, ocean::NoCurrent> CoastalField::sample(GeoPoint p, Depth z, double t_s) const {
   if (!coverage_.contains(p)) return unexpected(ocean::NoCurrent::outside_area);
   const auto at = plane(p);
   auto c = flow(at.east, at.north, t_s);
+  if (fading_m_ > 0) {
+    const double share = std::exp(-z.below_surface.si() / fading_m_);
+    c.east *= share;
+    c.north *= share;
+  }
   const double along = (at.east - from_x_) * way_x_ + (at.north - from_y_) * way_y_;
   const double phase = 2 * kPi * (t_s - start_s_) / kM2Period + tide_phase_ - along / kTideRadian;
   const double major = tide_major_ * std::cos(phase), minor = tide_minor_ * std::sin(phase);

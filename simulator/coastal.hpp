@@ -30,6 +30,7 @@ struct CoastalSpec {
   double eddy_drift{0.03};                  ///< westward, m/s
   double tide{0.10};                        ///< M2, major axis along the straight way, m/s
   double tide_ratio{0.35};                  ///< minor to major axis
+  double fading_m{0};  ///< e-folding depth of jets and eddies; 0: as strong at every depth. The tide always is
   // How the truth differs from the forecast of the same seed.
   double shift_km{4};       ///< every eddy is elsewhere by this much, in a drawn direction
   double tide_lag_deg{15};  ///< of phase
@@ -47,12 +48,13 @@ struct CoastalSpec {
 ///
 /// so everything but the tide is free of divergence in that plane. An eddy's fastest flow is |S|·e^(−1/2)/σ at the
 /// distance σ, which is half of its "diameter". The tide is an ellipse of period 12.4206 h whose phase travels along
-/// the way with 120 km to a radian; it does not fill and empty the sea (no elevation is modelled).
+/// the way with 120 km to a radian; it does not fill and empty the sea (no elevation is modelled). With `fading_m` the flow
+/// without the tide falls as exp(−z/fading_m) with depth.
 class CoastalField {
  public:
   CoastalField(const CoastalSpec& spec, Variant variant);
 
-  [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth, double t_s) const;
+  [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth z, double t_s) const;
   [[nodiscard]] ocean::Coverage coverage() const { return coverage_; }
   [[nodiscard]] MetresPerSecond fastest() const { return fastest_; }
 
@@ -79,7 +81,7 @@ class CoastalField {
   double lat0_{}, lon0_{}, start_s_{};
   LocalMetric metric_;
   double way_x_{}, way_y_{1}, from_x_{}, from_y_{};  ///< unit vector of the way and its start, in the plane
-  double width_m_{}, height_m_{};
+  double width_m_{}, height_m_{}, fading_m_{};
   std::vector<Eddy> eddies_;
   std::vector<Jet> jets_;
   double tide_major_{}, tide_minor_{}, tide_phase_{};

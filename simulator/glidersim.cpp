@@ -164,6 +164,13 @@ int run(const RunOptions& o, world::World& world) {
     }
     members.push_back({g.plan, folders.back().get()});
   }
+  std::unique_ptr<ForecastFeed> feed;
+  if (!scenario->forecasts.folder.empty() && !o.alone) {
+    auto made = ForecastFeed::make(world.files, scenario->forecasts, truth->model());
+    if (!made) return usage("forecasts: " + made.error());
+    feed = std::move(*made);
+    if (const auto first = feed->publish(scenario->start); !first) return usage("forecasts: " + first.error());
+  }
   Simulation simulation{std::move(members), truth->ocean(), *chart, scenario->end, scenario->seed};
   const auto surfaced = [&](const SurfacingRecord& r) { teller.line(surfacing_line(r, simulation.plan(r.glider))); };
   if (o.alone) {
@@ -177,7 +184,13 @@ int run(const RunOptions& o, world::World& world) {
                 std::move(ports),
                 scenario->start,
                 pace,
-                {surfaced, [&](const std::string& said) { teller.aside("glidersim: " + said); }}};
+                {surfaced, [&](const std::string& said) { teller.aside("glidersim: " + said); },
+                 [&](Instant now) {
+                   if (!feed) return;
+                   const auto published = feed->publish(now);
+                   if (!published) teller.aside("glidersim: forecasts: " + published.error());
+                   if (published && *published > 0) teller.line("forecast cycle published at " + utc_text(now));
+                 }}};
   switch (runner.run()) {
     case RunOutcome::finished:
       break;

@@ -11,7 +11,8 @@ struct OceanTruth::Parts {
   std::optional<ocean::GriddedField> grid, grid_surface;
   std::vector<ocean::AnalyticField> analytic;
   std::optional<ocean::FieldSum> sum;
-  std::optional<CoastalField> coastal;
+  std::optional<CoastalField> coastal, coastal_model;
+  std::optional<PerturbedField> dive, surface;
 };
 
 OceanTruth::OceanTruth(std::unique_ptr<Parts> parts) : parts_{std::move(parts)} {}
@@ -35,6 +36,7 @@ Expected<OceanTruth, TruthError> OceanTruth::make(const TruthPlan& plan, Instant
     parts->grid_surface.emplace(parts->grid->shallowest());
   } else if (plan.coastal) {
     parts->coastal.emplace(plan.coastal->spec, plan.coastal->variant);
+    parts->coastal_model.emplace(plan.coastal->spec, Variant::forecast);
   } else {
     auto specs = plan.analytic;
     if (plan.still) specs = {ocean::AnalyticSpec{"constant", {}, Metres{1}, MetresPerSecond{1}, {}, {}, false, {}, {}}};
@@ -47,10 +49,26 @@ Expected<OceanTruth, TruthError> OceanTruth::make(const TruthPlan& plan, Instant
     for (const auto& field : parts->analytic) refs.emplace_back(field);
     parts->sum.emplace(std::move(refs));
   }
-  return OceanTruth{std::move(parts)};
+  OceanTruth truth{std::move(parts)};
+  if (plan.error) {
+    const auto exact = truth.exact();
+    truth.parts_->dive.emplace(exact.dive, *plan.error, epoch_seconds(start));
+    truth.parts_->surface.emplace(exact.surface, *plan.error, epoch_seconds(start));
+  }
+  return truth;
 }
 
 ocean::Ocean OceanTruth::ocean() const {
+  if (parts_->dive) return {*parts_->dive, *parts_->surface};
+  return exact();
+}
+
+ocean::FieldRef OceanTruth::model() const {
+  if (parts_->coastal_model) return *parts_->coastal_model;
+  return exact().dive;
+}
+
+ocean::Ocean OceanTruth::exact() const {
   if (parts_->grid) return {*parts_->grid, *parts_->grid_surface};
   if (parts_->coastal) return {*parts_->coastal, *parts_->coastal};
   return {*parts_->sum, *parts_->sum};

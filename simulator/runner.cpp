@@ -191,6 +191,7 @@ void Runner::tell(State state) {
     bytes.emplace_back(ports_[i].name, lines_[i]->total() - counted_from_[i]);
   if (pace_.charge_computing || pace_.realtime)
     for (auto& port : ports_) port.folder->remember(now_);
+  if (told_.time_comes) told_.time_comes(now_);
   asked_at_ = wall_.tick();
   expect_answer();
   clock_.run(now_, tick_of(now_), bytes);
@@ -236,6 +237,7 @@ void Runner::free_running() {
   pacer_ = wall_.call_at(*wall_due(*event), [this] {
     pacer_.reset();
     if (state_ == State::over) return;
+    if (const auto now = simulation_.next_event(); now && told_.time_comes) told_.time_comes(*now);
     let_it_happen();
     if (!to_drop_.empty()) wall_.call_at(wall_.tick() + kLastBytes, [this] { let_links_fall(); });
     proceed();

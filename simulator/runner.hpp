@@ -44,6 +44,7 @@ class Runner {
   struct Told {
     std::function<void(const SurfacingRecord&)> surfacing;
     std::function<void(const std::string&)> said;
+    std::function<void(Instant)> time_comes;  ///< before anybody is told: files appear that are there from then on
   };
   struct Port {
     std::string name;  ///< of the glider

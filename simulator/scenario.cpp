@@ -1,10 +1,13 @@
 #include "simulator/scenario.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <set>
 
 #include "config/yaml_reader/schema.hpp"
 #include "core/base/text.hpp"
+#include "simulator/random.hpp"
 #include "simulator/scenario_draft.hpp"
 
 namespace glidehelm::simulator {
@@ -70,8 +73,52 @@ void check_truth(const TruthDraft& t, Reading& reading) {
                      "greater than south_deg by at most 20");
 }
 
+template <class Draft>
+void check_area(const Draft& d, const std::string& path, Reading& reading) {
+  if (!d.west_deg || !d.east_deg || !d.south_deg || !d.north_deg) return;
+  if (*d.east_deg <= *d.west_deg)
+    reading.complain(path + ".area.east_deg", "no width of an area", {}, "greater than west_deg");
+  if (*d.north_deg <= *d.south_deg)
+    reading.complain(path + ".area.north_deg", "no height of an area", {}, "greater than south_deg");
+}
+
+void check_forecasts(const ForecastDraft& f, Reading& reading) {
+  if (reading.places.count("forecasts") == 0) return;
+  check_area(f, "forecasts", reading);
+  if (f.folder.empty()) reading.complain("forecasts", "no folder", {}, "folder: where the files appear");
+  for (std::size_t i = 1; i < f.grid.depths_m.size(); ++i)
+    if (f.grid.depths_m[i] <= f.grid.depths_m[i - 1]) {
+      reading.complain("forecasts.depths_m", "depths that do not rise", {}, "each greater than the one before");
+      break;
+    }
+  if (!f.west_deg || !f.east_deg || !f.south_deg || !f.north_deg || f.time_step_h <= 0) return;
+  const double nodes = ((*f.east_deg - *f.west_deg) / f.step_deg + 1) *
+                       ((*f.north_deg - *f.south_deg) / f.step_deg + 1) * (f.hours / f.time_step_h + 1) *
+                       static_cast<double>(std::max<std::size_t>(1, f.grid.depths_m.size()));
+  if (nodes > 2e7)
+    reading.complain("forecasts", "more than 20 million values a component", {}, "a larger step_deg or time_step_h");
+}
+
+void check_fleet(const FleetDraft& f, Reading& reading) {
+  if (reading.places.count("fleet") == 0) return;
+  check_area(f, "fleet", reading);
+  if (!f.connect.empty()) {
+    const auto first = address(f.connect, true);
+    if (!first || first->port + f.count - 1 > 65535)
+      reading.complain("fleet.connect", "no address", config::shown(f.connect),
+                       "HOST:PORT, with ports for all of them");
+  }
+  check_glider(f.each, "fleet.each", reading);
+}
+
 void check(const ScenarioDraft& d, Reading& reading) {
   check_truth(d.truth, reading);
+  if (d.truth.error.shortest_km > d.truth.error.longest_km)
+    reading.complain("truth.error.shortest_km", "longer than longest_km", {}, "at most longest_km");
+  check_forecasts(d.forecasts, reading);
+  check_fleet(d.fleet, reading);
+  if (d.gliders.empty() && reading.places.count("fleet") == 0 && reading.places.count("gliders") == 0)
+    reading.complain("gliders", "no glider", {}, "a list of gliders, or a fleet");
   std::set<std::string> names, folders;
   for (std::size_t i = 0; i < d.gliders.size(); ++i) {
     const auto path = "gliders[" + std::to_string(i) + "]";
@@ -129,8 +176,61 @@ ScenarioGlider glider_of(const GliderDraft& d, const std::string& file, double s
   return g;
 }
 
-TruthPlan truth_of(const ScenarioDraft& d, const Scenario& s, bool coastal, const std::string& file) {
+/// The gliders that `fleet` stands for: starts in its area, goals a leg away in a direction that stays inside when there is one.
+std::vector<GliderDraft> fleet_of(const FleetDraft& f, std::uint64_t seed) {
+  std::vector<GliderDraft> all;
+  Random random = Random{seed}.stream(78);
+  const auto first = f.connect.empty() ? std::nullopt : address(f.connect, true);
+  const auto inside = [&](GeoPoint p) {
+    return p.lat.degrees() > *f.south_deg && p.lat.degrees() < *f.north_deg && p.lon.degrees() > *f.west_deg &&
+           p.lon.degrees() < *f.east_deg;
+  };
+  for (int i = 1; i <= f.count; ++i) {
+    GliderDraft g = f.each;
+    char number[8];
+    std::snprintf(number, sizeof number, f.count > 99 ? "%03d" : "%02d", i);
+    g.name = f.name + number;
+    g.folder = f.folder + "/" + g.name;
+    g.goal.radius = f.goal_radius;
+    // Not at the very edge: a glider that starts there is soon outside the ocean.
+    g.start.lat_deg = *f.south_deg + random.uniform(0.1, 0.9) * (*f.north_deg - *f.south_deg);
+    g.start.lon_deg = *f.west_deg + random.uniform(0.1, 0.9) * (*f.east_deg - *f.west_deg);
+    auto goal = GeoPoint::from_degrees(0.5 * (*f.south_deg + *f.north_deg), 0.5 * (*f.west_deg + *f.east_deg));
+    constexpr int kTries = 100;
+    for (int k = 0; k < kTries; ++k) {
+      const auto there = destination(point(g.start), Bearing{Radians{random.uniform(0, 2 * kPi)}}, f.leg);
+      if (!inside(there)) continue;
+      goal = there;
+      break;
+    }
+    g.goal.lat_deg = goal.value_or(GeoPoint{}).lat.degrees();
+    g.goal.lon_deg = goal.value_or(GeoPoint{}).lon.degrees();
+    if (first) g.line.connect = first->host + ":" + std::to_string(first->port + i - 1);
+    if (f.mixed_firmware) g.call.firmware = i % 10 == 0 ? Firmware::g1 : i % 3 == 0 ? Firmware::g2 : Firmware::g3;
+    g.mission_number = (f.each.mission_number + i - 1) % 10000;
+    all.push_back(std::move(g));
+  }
+  return all;
+}
+
+ForecastPlan forecasts_of(const ForecastDraft& d, std::uint64_t seed, const std::string& file) {
+  ForecastPlan plan = d;
+  plan.folder = path_beside(file, d.folder);
+  plan.grid.west_deg = d.west_deg.value_or(0);
+  plan.grid.east_deg = d.east_deg.value_or(0);
+  plan.grid.south_deg = d.south_deg.value_or(0);
+  plan.grid.north_deg = d.north_deg.value_or(0);
+  plan.grid.step_deg = d.step_deg;
+  plan.seed = seed;
+  return plan;
+}
+
+TruthPlan truth_of(const ScenarioDraft& d, const Scenario& s, bool coastal, bool error, const std::string& file) {
   TruthPlan t;
+  if (error) {
+    t.error = d.truth.error;
+    t.error->seed = d.truth.error.own_seed.value_or(s.seed);
+  }
   t.grid = path_beside(file, d.truth.grid);
   t.still = d.truth.still;
   for (const auto& a : d.truth.analytic) {
@@ -180,7 +280,18 @@ Expected<Scenario, std::vector<config::ConfigError>> read_scenario(std::string_v
   s.end = draft.end;
   Random seeds = Random{s.seed}.stream(77);
   for (const auto& g : draft.gliders) s.gliders.push_back(glider_of(g, file, epoch_seconds(s.start), seeds.next()));
-  s.truth = truth_of(draft, s, reading.places.count("truth.coastal") > 0, file);
+  if (draft.fleet.count > 0) {
+    const auto fleet = fleet_of(draft.fleet, s.seed);
+    for (std::size_t i = 0; i < fleet.size(); ++i)
+      s.gliders.push_back(glider_of(
+          fleet[i], file,
+          epoch_seconds(s.start) +
+              std::floor(3600 * draft.fleet.spread_h * static_cast<double>(i) / static_cast<double>(fleet.size())),
+          seeds.next()));
+  }
+  s.forecasts = forecasts_of(draft.forecasts, s.seed, file);
+  s.truth =
+      truth_of(draft, s, reading.places.count("truth.coastal") > 0, reading.places.count("truth.error") > 0, file);
   return s;
 }
 

@@ -9,6 +9,8 @@
 #include "core/base/expected.hpp"
 #include "core/ocean/analytic.hpp"
 #include "simulator/coastal.hpp"
+#include "simulator/forecast_feed.hpp"
+#include "simulator/ocean_error.hpp"
 #include "simulator/simulation.hpp"
 
 /// What glidersim is asked to play: one YAML file, `schema: glidehelm/scenario/v1`. Paths in it are meant from the folder
@@ -23,12 +25,14 @@ struct CoastalTruth {
   Variant variant{Variant::truth};
 };
 
-/// `truth`: exactly one of a grid file, analytic fields (added), a made-up sea, or still water.
+/// `truth`: exactly one of a grid file, analytic fields (added), a made-up sea, or still water; and how the water differs
+/// from it.
 struct TruthPlan {
   std::string grid;
   std::vector<ocean::AnalyticSpec> analytic;
   std::optional<CoastalTruth> coastal;
   bool still{};
+  std::optional<OceanError> error;
 };
 
 /// Where a glider's dialog goes.
@@ -54,8 +58,9 @@ struct Scenario {
   bool charge_computing{};   ///< compute_time: measured
   double daemon_wait_s{60};  ///< how long a missing daemon is waited for
   TruthPlan truth;
+  ForecastPlan forecasts;
   EndPlan end;
-  std::vector<ScenarioGlider> gliders;
+  std::vector<ScenarioGlider> gliders;  ///< those of `gliders`, then those of `fleet`
 };
 
 /// The scenario of a file's text, or every error in it. `seed`, when given, replaces the file's (and with it those of

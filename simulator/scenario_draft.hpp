@@ -50,7 +50,24 @@ struct CoastalDraft {
   PlaceDraft from, to;
   Variant variant{Variant::truth};
 };
+struct ErrorDraft : OceanError {
+  std::optional<std::uint64_t> own_seed;
+};
+struct ForecastDraft : ForecastPlan {
+  std::optional<double> west_deg, east_deg, south_deg, north_deg;
+  double step_deg{0.05};
+};
+struct FleetDraft {
+  int count{};
+  std::string name{"g"}, folder{"run"}, connect;
+  std::optional<double> west_deg, east_deg, south_deg, north_deg;
+  Metres leg{100e3}, goal_radius{2000};
+  double spread_h{4};
+  bool mixed_firmware{true};
+  GliderDraft each;
+};
 struct TruthDraft {
+  ErrorDraft error;
   std::string grid;
   std::vector<AnalyticDraft> analytic;
   CoastalDraft coastal;
@@ -63,8 +80,10 @@ struct ScenarioDraft {
   bool charge_computing{};
   double daemon_wait_s{60};
   TruthDraft truth;
+  ForecastDraft forecasts;
   EndPlan end;
   std::vector<GliderDraft> gliders;
+  FleetDraft fleet;
 };
 
 // Keys of the line, in scenario_line_fields.cpp.
@@ -73,6 +92,11 @@ config::Fields<FaultPlan> fault_fields();
 config::Fields<GliderDraft> faults_fields();
 /// `dialog`: which generation prints.
 config::Fields<CallSetup> dialog_fields();
+
+// Keys of the ocean's error, of forecasts and of fleets, in scenario_fleet_fields.cpp.
+config::Fields<ErrorDraft> ocean_error_fields();
+config::Fields<ForecastDraft> forecast_fields();
+config::Fields<FleetDraft> fleet_fields(const config::Fields<GliderDraft>& each);
 
 /// Every key of a scenario: name, meaning, range, default.
 const config::Fields<ScenarioDraft>& scenario_fields();

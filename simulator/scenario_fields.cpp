@@ -84,11 +84,9 @@ Fields<CallSetup> call_fields() {
   return f;
 }
 
-Fields<GliderDraft> glider_fields() {
+/// What gliders of a list and of a fleet have alike.
+void add_flight_keys(Fields<GliderDraft>& f) {
   using G = GliderDraft;
-  Fields<LineDraft> line;
-  line.text({"connect", "HOST:PORT of the daemon's `listen`"}, &LineDraft::connect);
-  line.text({"listen", "ADDRESS:PORT that the daemon dials"}, &LineDraft::listen);
   Fields<G> frame;
   frame.maybe_number({"magnetic_variation_deg", "m_gps_mag_var, positive west", false, "0 without rotation_deg"},
                      &G::variation_deg, 1, between(-180, 180));
@@ -99,15 +97,6 @@ Fields<GliderDraft> glider_fields() {
   mission.text({"file", "mission file it flies"}, &G::mission_file);
   mission.whole({"number", "MMMM of MMMM.SSSS"}, &G::mission_number, between(0, 9999));
   mission.whole({"slot", "NN of the goto_lNN.ma that it reads"}, &G::slot, between(0, 99));
-  Fields<G> f;
-  f.text({"name", "name in its dialog", true}, &G::name, config::kName);
-  f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields());
-  f.part({"goal", "where it is meant to go", true}, &G::goal, goal_fields());
-  f.text({"initial_list", "goto list on board at the start", false, "the goal alone"}, &G::initial_list);
-  f.number({"initial_radius_m", "list_when_wpt_dist of a list that holds the goal alone"}, &G::initial_radius, 1,
-           between(10, 1e5));
-  f.text({"folder", "dockserver folder of this glider, made if absent", true}, &G::folder);
-  f.part({"line", "where its dialog goes: `connect` or `listen`"}, &G::line, line);
   f.section({"vehicle", "the glider itself"}, vehicle_fields());
   f.section({"schedule", "dives and surface intervals"}, schedule_fields());
   f.section({"frame", "local frame: one of two keys"}, frame);
@@ -118,6 +107,23 @@ Fields<GliderDraft> glider_fields() {
   f.number({"clock_skew_s", "its clock less UTC"}, &G::clock_skew_s, 1, between(-1e8, 1e8));
   f.part({"dialog", "what it prints"}, &G::call, dialog_fields());
   f.section({"faults", "what goes wrong"}, faults_fields());
+}
+
+Fields<GliderDraft> glider_fields() {
+  using G = GliderDraft;
+  Fields<LineDraft> line;
+  line.text({"connect", "HOST:PORT of the daemon's `listen`"}, &LineDraft::connect);
+  line.text({"listen", "ADDRESS:PORT that the daemon dials"}, &LineDraft::listen);
+  Fields<G> f;
+  f.text({"name", "name in its dialog", true}, &G::name, config::kName);
+  f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields());
+  f.part({"goal", "where it is meant to go", true}, &G::goal, goal_fields());
+  f.text({"initial_list", "goto list on board at the start", false, "the goal alone"}, &G::initial_list);
+  f.number({"initial_radius_m", "list_when_wpt_dist of a list that holds the goal alone"}, &G::initial_radius, 1,
+           between(10, 1e5));
+  f.text({"folder", "dockserver folder of this glider, made if absent", true}, &G::folder);
+  f.part({"line", "where its dialog goes: `connect` or `listen`"}, &G::line, line);
+  add_flight_keys(f);
   return f;
 }
 
@@ -199,6 +205,8 @@ Fields<CoastalDraft> coastal_fields() {
   strength(f, "jet_offset_km", "between the jets", &CoastalSpec::jet_offset_km, 0, 500);
   strength(f, "eddy_m_per_s", "strongest eddy", &CoastalSpec::eddy, 0, 3);
   strength(f, "tide_m_per_s", "M2, major axis", &CoastalSpec::tide, 0, 3);
+  strength(f, "fading_m", "e-folding depth of jets and eddies; 0: as strong at every depth", &CoastalSpec::fading_m, 0,
+           1e5);
   strength(f, "shift_km", "by which the truth's eddies are elsewhere", &CoastalSpec::shift_km, 0, 200);
   strength(f, "tide_lag_deg", "phase of the truth's tide ahead of the forecast's", &CoastalSpec::tide_lag_deg, -360,
            360);
@@ -216,6 +224,8 @@ const Fields<ScenarioDraft>& scenario_fields() {
     truth.list({"analytic", "analytic fields, added up"}, &TruthDraft::analytic, analytic_fields(), 0);
     truth.part({"coastal", "a made-up sea"}, &TruthDraft::coastal, coastal_fields());
     truth.flag({"still", "no current anywhere"}, &TruthDraft::still);
+    truth.part({"error", "how the water differs from that: what a forecast does not know"}, &TruthDraft::error,
+               ocean_error_fields());
     Fields<EndPlan> end;
     end.flag({"at_goal", "after the surface interval that follows the arrival"}, &EndPlan::at_goal);
     end.maybe_whole({"surfacings", "after so many", false, "never"}, &EndPlan::surfacings, between(1, 1e6));
@@ -231,9 +241,13 @@ const Fields<ScenarioDraft>& scenario_fields() {
     f.word({"compute_time", "whether the daemon's computing takes simulated time"}, &S::charge_computing,
            std::vector<std::pair<std::string, bool>>{{"free", false}, {"measured", true}});
     f.number({"daemon_wait_s", "how long a missing daemon is waited for"}, &S::daemon_wait_s, 1, between(0, 3600));
-    f.part({"truth", "what the water does: one of four keys", true}, &S::truth, truth);
+    f.part({"truth", "what the water does: one of four keys, and its error", true}, &S::truth, truth);
+    f.part({"forecasts", "files that reach a folder while the gliders fly"}, &S::forecasts, forecast_fields());
     f.part({"end", "when a run is over"}, &S::end, end);
-    f.list({"gliders", "the gliders", true}, &S::gliders, glider_fields(), 1);
+    f.list({"gliders", "the gliders, needed unless there is a fleet"}, &S::gliders, glider_fields(), 1);
+    Fields<GliderDraft> each;
+    add_flight_keys(each);
+    f.part({"fleet", "many gliders in few lines"}, &S::fleet, fleet_fields(each));
     return f;
   }();
   return kFields;

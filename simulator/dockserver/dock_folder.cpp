@@ -24,7 +24,16 @@ Expected<std::unique_ptr<world::Folder>, FolderError> make_path(world::Files& fi
   return std::move(*folder);
 }
 
-Expected<std::unique_ptr<world::Folder>, FolderError> make_marked(world::Files& files, const std::string& path) {
+/// 2026-11-25T10:20:30Z → 20261125T102030
+std::string stamp_of(Instant when) {
+  std::string stamp = utc_text(when);
+  for (const char c : {'-', ':', 'Z'}) stamp.erase(std::remove(stamp.begin(), stamp.end(), c), stamp.end());
+  return stamp;
+}
+
+}  // namespace
+
+Expected<std::unique_ptr<world::Folder>, FolderError> make_own_folder(world::Files& files, const std::string& path) {
   auto folder = make_path(files, path);
   if (!folder) return folder;
   if ((*folder)->stat(kMarker)) return folder;
@@ -38,17 +47,8 @@ Expected<std::unique_ptr<world::Folder>, FolderError> make_marked(world::Files& 
   return folder;
 }
 
-/// 2026-11-25T10:20:30Z → 20261125T102030
-std::string stamp_of(Instant when) {
-  std::string stamp = utc_text(when);
-  for (const char c : {'-', ':', 'Z'}) stamp.erase(std::remove(stamp.begin(), stamp.end(), c), stamp.end());
-  return stamp;
-}
-
-}  // namespace
-
 Expected<std::unique_ptr<DockFolder>, FolderError> DockFolder::make(world::Files& files, const std::string& folder) {
-  const auto own = make_marked(files, folder);
+  const auto own = make_own_folder(files, folder);
   if (!own) return unexpected(own.error());
   auto to_glider = make_path(files, folder + "/to-glider");
   if (!to_glider) return unexpected(to_glider.error());

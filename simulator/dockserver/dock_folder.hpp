@@ -20,6 +20,9 @@ struct FolderError {
 /// The marker that a folder is glidersim's own: a daemon on a simulated clock writes nowhere else (product.md 4).
 inline constexpr const char* kMarker = ".glidersim";
 
+/// A folder with the marker, made with those above it when absent; refused when it holds anything and has none.
+Expected<std::unique_ptr<world::Folder>, FolderError> make_own_folder(world::Files& files, const std::string& path);
+
 /// A dockserver folder on disk: the marker file, to-glider, from-glider, archive (`20260301T103000_goto_l10.ma`: what was
 /// sent) and logs (`sim01_20260301T103000_network_net_0.log`, one per connection). `make` creates what is absent; a folder that
 /// exists without the marker and holds anything belongs to somebody and is refused.

@@ -107,7 +107,10 @@ DialogCounts DialogReader::counts() const {
 
 void DialogReader::take_block(DockserverBlock block) {
   ++counts_.dockserver_blocks;
+  const bool nothing = block.complete && finder_->nothing_to_send(block.text);
+  auto command = nothing ? block.command : std::string{};
   events_.emplace_back(std::move(block));
+  if (nothing) events_.emplace_back(NothingToSend{std::move(command)});
 }
 
 void DialogReader::take_line(const Line& line) {
@@ -119,8 +122,11 @@ void DialogReader::take_line(const Line& line) {
       if (is_measured(fact.say)) fact.whole = false;
   if (line.cut) {
     // Only a prompt is complete without a line end; of anything else that was cut nothing is used.
+    const bool said_nothing = facts_.empty();
     std::erase_if(facts_, [](const Fact& f) { return !is_prompt(f.say); });
-    if (facts_.empty() && !is_blank(line.text)) note_damage(line.text);
+    // What stands before a transfer may be a stray character; what the connection's end cut was a line.
+    const bool stray = line.before_noise && said_nothing;
+    if (facts_.empty() && !stray && !is_blank(line.text)) note_damage(line.text);
     static_cast<void>(apply_all());
     last_text_.clear();
     return;
@@ -128,7 +134,9 @@ void DialogReader::take_line(const Line& line) {
   if (line.after_block && join_with_last(line)) return;
   if (ends_later_) finish_connection_block();
   const bool any_whole = std::any_of(facts_.begin(), facts_.end(), [](const Fact& f) { return f.whole; });
-  const bool ends = ends_connection_block(line.text);
+  // The rest of a line that a dockserver block tore stands inside the block of the line.
+  const bool rest = line.after_block && facts_.empty() && last_damaged_ && !last_text_.empty();
+  const bool ends = !rest && ends_connection_block(line.text);
   const bool damaged = apply_all();
   if (damaged) note_damage(line.text);
   // A line that says nothing may be the first half of a torn location: the next line tells.
@@ -280,6 +288,13 @@ void DialogReader::apply(Fact& fact) {
       return;
     case Say::transfer_done:
       events_.emplace_back(TransferDone{std::move(as<std::string>(fact))});
+      return;
+    case Say::transfer_failed:
+      events_.emplace_back(TransferFailed{std::move(as<std::string>(fact))});
+      return;
+    case Say::command_succeeded:
+    case Say::command_failed:
+      events_.emplace_back(CommandEnded{std::move(as<std::string>(fact)), fact.say == Say::command_succeeded});
       return;
     case Say::noise:
     case Say::oddity:

@@ -18,7 +18,7 @@ struct DialogCounts {
   std::uint64_t at_surface_blocks{};  ///< `Glider X at surface.`
   std::uint64_t gps_lines{};          ///< complete `GPS Location:` lines, sentinels and reprints included
   std::uint64_t sensor_lines{};       ///< complete ones
-  std::uint64_t damaged_lines{};      ///< match in part, or were cut by the end of the connection
+  std::uint64_t damaged_lines{};      ///< match in part, or were cut
   std::uint64_t dockserver_blocks{};
   std::uint64_t long_lines{};  ///< beyond 4 KiB
   std::uint64_t discarded_bytes{};

@@ -64,6 +64,23 @@ struct TransferDone {
   std::string file;
   friend bool operator==(const TransferDone&, const TransferDone&) = default;
 };
+/// A transfer ended without its file. What is on the glider now may be half of it.
+struct TransferFailed {
+  std::string file;
+  friend bool operator==(const TransferFailed&, const TransferFailed&) = default;
+};
+/// `! succeeded:dockzr *`, `! FAILED: dockzs -num=3`: how a command behind `!` ended. Failed `dockzr`: nothing was sent.
+struct CommandEnded {
+  std::string command;  ///< as the dialog repeats it
+  bool succeeded{};
+  friend bool operator==(const CommandEnded&, const CommandEnded&) = default;
+};
+/// The dockserver was told to send files and there was none (`not found>*<`). Follows its DockserverBlock. When a list
+/// lay in the folder before, somebody took it away; when it came later, it waits for the next surfacing.
+struct NothingToSend {
+  std::string command;  ///< `dockzr -archive *`; empty when the block did not say
+  friend bool operator==(const NothingToSend&, const NothingToSend&) = default;
+};
 /// Ctrl-F was answered: the glider reads its mafiles again.
 struct MafilesReread {
   friend bool operator==(MafilesReread, MafilesReread) = default;
@@ -74,8 +91,8 @@ struct KeyHeard {
   friend bool operator==(const KeyHeard&, const KeyHeard&) = default;
 };
 
-using DialogEvent =
-    std::variant<ConnectionOpened, NameHeard, BlockRead, WindowHeard, WindowExtended, MissionResumed, MissionEnded,
-                 AbortSeen, PromptSeen, DockserverBlock, TransferStarted, TransferDone, MafilesReread, KeyHeard>;
+using DialogEvent = std::variant<ConnectionOpened, NameHeard, BlockRead, WindowHeard, WindowExtended, MissionResumed,
+                                 MissionEnded, AbortSeen, PromptSeen, DockserverBlock, TransferStarted, TransferDone,
+                                 TransferFailed, CommandEnded, NothingToSend, MafilesReread, KeyHeard>;
 
 }  // namespace glidehelm::protocol

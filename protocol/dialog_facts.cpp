@@ -1,5 +1,6 @@
 #include "protocol/dialog_facts.hpp"
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -67,13 +68,13 @@ Fact fact(Say say, std::optional<Parsed<T>> parsed, std::size_t& used) {
   return out;
 }
 
-/// A long head leaves the width of the age open, so a value that was put together from two pieces proves nothing.
-bool value_spans_join(const Place& place, std::size_t used) {
+/// A long head leaves the column of the age open, so a head or a value that was put together from two pieces proves
+/// nothing: a name that lost bytes may be the name of another sensor.
+bool sensor_spans_join(const Place& place, std::size_t used) {
   constexpr std::size_t kAlignedEnd = 57 + 9;  // the age ends in column 57, " secs ago" follows
   if (place.joined_at == Line::kWhole || place.end + used == kAlignedEnd) return false;
-  const auto value = place.line.find(")=", place.end);
-  const auto value_end = place.line.find(' ', value);
-  return place.joined_at > value && place.joined_at <= value_end;
+  const auto value_end = place.line.find(' ', place.line.find(")=", place.end));
+  return place.joined_at >= place.end && place.joined_at <= value_end;
 }
 
 std::optional<Fact> carrier(const Place& place) {
@@ -126,7 +127,7 @@ std::optional<Fact> sensor(const Place& place, std::size_t& used) {
   // `report ++` prints `sensor: NAME = VALUE UNIT`: another kind of line, not a damaged one.
   if (rest.empty() || !(is_letter(rest.front()) || rest.front() == '_')) return std::nullopt;
   auto out = fact(Say::sensor, parse_sensor(rest, place.begin), used);
-  if (out.whole && value_spans_join(place, used)) return Fact{Say::sensor, false, {}, 0};
+  if (out.whole && sensor_spans_join(place, used)) return Fact{Say::sensor, false, {}, 0};
   return out;
 }
 
@@ -135,6 +136,12 @@ std::optional<Fact> prompt(Say say, const Place& place, std::size_t& used) {
   auto out = fact(say, parse_prompt(place.rest()), used);
   if (!out.whole) return std::nullopt;  // the words stand in menus, too
   return out;
+}
+
+std::optional<Fact> file_name(Say say, const Place& place) {
+  const auto name = trimmed(first_word(place.rest()));
+  if (name.empty()) return Fact{say, false, {}, 0};
+  return Fact{say, true, std::string{name}, 0};
 }
 
 std::optional<Fact> read(Say say, const Place& place, std::size_t& used) {
@@ -184,10 +191,55 @@ std::optional<Fact> read(Say say, const Place& place, std::size_t& used) {
       return heard_key(place);
     case Say::transfer_starts:
     case Say::transfer_done:
-      return Fact{say, true, std::string{trimmed(first_word(rest))}, 0};
+    case Say::transfer_failed:
+      return file_name(say, place);
+    case Say::command_succeeded:
+    case Say::command_failed:
+      return Fact{say, true, std::string{trimmed(rest)}, 0};
     default:
       return Fact{say, true, {}, 0};
   }
+}
+
+/// Where the text ends that a fact of free layout was read from; 0 when a join anywhere in it does no harm, because the
+/// layout was checked or because it is made of fixed words.
+std::size_t free_text_ends(Say say, const Place& place, std::size_t used) {
+  switch (say) {
+    case Say::because:
+    case Say::mission:
+    case Say::waypoint:
+    case Say::until_diving:
+    case Say::extending:
+    case Say::devices:
+    case Say::gliderdos:
+    case Say::gliderlab:
+      return place.end + used;
+    case Say::vehicle:
+    case Say::at_surface:
+    case Say::completed:
+    case Say::aborts:
+    case Say::heard_a:
+    case Say::transfer_starts:
+    case Say::transfer_done:
+    case Say::transfer_failed:
+    case Say::command_succeeded:
+    case Say::command_failed:
+      return place.line.size();
+    default:
+      return 0;
+  }
+}
+
+/// The name of `Glider X at surface.` stands before its label.
+std::size_t free_text_begins(Say say, const Place& place) {
+  if (say != Say::at_surface) return place.end;
+  const auto glider = place.line.rfind("Glider ", place.begin);
+  return glider == std::string_view::npos ? 0 : glider;
+}
+
+bool may_have_lost_bytes(Say say, const Place& place, std::size_t used) {
+  return place.joined_at != Line::kWhole && place.joined_at >= free_text_begins(say, place) &&
+         place.joined_at < free_text_ends(say, place, used);
 }
 
 }  // namespace
@@ -202,18 +254,30 @@ FactFinder::Built FactFinder::build(const DialogWords& words) {
   for (const auto& phrase : words.reread) add(Say::reread, phrase);
   for (const auto& phrase : words.transfer_starts) add(Say::transfer_starts, phrase);
   for (const auto& phrase : words.transfer_done) add(Say::transfer_done, phrase);
+  for (const auto& phrase : words.transfer_failed) add(Say::transfer_failed, phrase);
+  for (const auto& phrase : words.command_succeeded) add(Say::command_succeeded, phrase);
+  for (const auto& phrase : words.command_failed) add(Say::command_failed, phrase);
+  built.nothing_to_send = words.nothing_to_send;
   return built;
 }
 
 FactFinder::FactFinder(const DialogWords& words) : FactFinder{build(words)} {}
+
+bool FactFinder::nothing_to_send(std::string_view text) const {
+  return std::any_of(nothing_to_send_.begin(), nothing_to_send_.end(), [&](const std::string& phrase) {
+    return phrase.size() > 1 && text.find(phrase) != std::string_view::npos;
+  });
+}
 
 void FactFinder::find(std::string_view text, std::size_t joined_at, std::vector<Fact>& facts) const {
   std::size_t understood = 0;
   phrases_.find(text, [&](const Phrases::Hit& hit) {
     if (hit.begin < understood) return;
     std::size_t used = 0;
-    auto found = read(says_[hit.phrase], Place{text, hit.begin, hit.end, joined_at}, used);
+    const Place place{text, hit.begin, hit.end, joined_at};
+    auto found = read(says_[hit.phrase], place, used);
     if (!found) return;
+    if (found->whole && may_have_lost_bytes(found->say, place, used)) *found = Fact{found->say, false, {}, 0};
     understood = hit.end + used;
     found->end = understood;
     facts.push_back(std::move(*found));

@@ -11,12 +11,18 @@
 
 namespace glidehelm::protocol {
 
-/// The texts that no sample shows and that may differ between firmwares and dockservers (slocum.md 5, note on
-/// evidence).
+/// The texts around a file on its way to the glider. No sample shows a list sent and re-read, and firmwares and
+/// dockservers may differ (slocum.md 5, note on evidence), so each can be replaced by any number of others; one of fewer
+/// than two characters is ignored. Compared with case. docs/dialogs.md says where each default comes from.
 struct DialogWords {
   std::vector<std::string> reread{"MAFILES will be re-read", "MAFILES reread"};
-  std::vector<std::string> transfer_starts{"Starting zModem transfer of "};  ///< a file name follows
-  std::vector<std::string> transfer_done{"zModem transfer DONE for file "};  ///< a file name follows
+  std::vector<std::string> transfer_starts{"Starting zModem transfer of "};      ///< a file name follows
+  std::vector<std::string> transfer_done{"zModem transfer DONE for file "};      ///< a file name follows
+  std::vector<std::string> transfer_failed{"zModem transfer FAILED for file "};  ///< a file name follows
+  std::vector<std::string> command_succeeded{"! succeeded:"};                    ///< the command follows
+  std::vector<std::string> command_failed{"! FAILED:"};                          ///< the command follows
+  /// In what the dockserver prints, not in a line of the glider: there was no file to send.
+  std::vector<std::string> nothing_to_send{"not found>"};
   friend bool operator==(const DialogWords&, const DialogWords&) = default;
 };
 
@@ -57,6 +63,9 @@ enum class Say : std::size_t {
   reread,
   transfer_starts,
   transfer_done,
+  transfer_failed,
+  command_succeeded,
+  command_failed,
 };
 
 struct CarrierLost {};
@@ -79,20 +88,26 @@ struct Fact {
 class FactFinder {
  public:
   explicit FactFinder(const DialogWords& words);
-  /// `joined_at` is where two pieces of the line were put together (Line::kWhole: nowhere). A number that spans it is
-  /// not trusted unless the layout of the line proves that no byte was lost.
+  /// `joined_at` is where two pieces of the line were put together (Line::kWhole: nowhere). A fact that spans it is not
+  /// whole unless the layout of its line proves that no byte was lost there: location lines, times and sensor lines of short heads
+  /// have fields of fixed width, fixed words are words; of `Range: 86m` nobody can tell that it was 486 (slocum.md R3).
   void find(std::string_view text, std::size_t joined_at, std::vector<Fact>& facts) const;
+  /// A text of the dockserver that says that there was nothing to send.
+  [[nodiscard]] bool nothing_to_send(std::string_view text) const;
 
  private:
   struct Built {
     std::vector<Say> says;
     std::vector<std::string_view> phrases;
+    std::vector<std::string> nothing_to_send;
   };
   static Built build(const DialogWords& words);
-  FactFinder(const Built& built) : says_{built.says}, phrases_{built.phrases} {}
+  FactFinder(const Built& built)
+      : says_{built.says}, phrases_{built.phrases}, nothing_to_send_{built.nothing_to_send} {}
 
   std::vector<Say> says_;  ///< by phrase
   Phrases phrases_;
+  std::vector<std::string> nothing_to_send_;
 };
 
 }  // namespace glidehelm::protocol

@@ -66,11 +66,37 @@ class Cursor {
     }
     return text_.substr(from, at_ - from);
   }
+  /// A number with exactly so many decimals, as `%.Nf` prints it.
+  bool fixed(std::string& text, std::size_t decimals) {
+    const std::size_t from = at_;
+    text = number();
+    const auto point = text.find('.');
+    if (point != std::string::npos && text.size() - point - 1 == decimals &&
+        text.find_first_of("eE") == std::string::npos)
+      return true;
+    at_ = from;
+    return false;
+  }
   bool number(double& value) {
     const std::size_t from = at_;
     const auto text = number();
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (!text.empty() && error == std::errc{} && end == text.data() + text.size() && std::isfinite(value)) return true;
+    at_ = from;
+    return false;
+  }
+  /// A whole number as `%*d` prints it: blanks up to the width, then the digits.
+  bool field(int& value, std::size_t width) {
+    const std::size_t from = at_;
+    const std::size_t padding = blanks();
+    if (whole(value) && padding == (at_ - from - padding < width ? width - (at_ - from - padding) : 0)) return true;
+    at_ = from;
+    return false;
+  }
+  /// Exactly `count` digits.
+  bool digits(int& value, std::size_t count) {
+    const std::size_t from = at_;
+    if (whole(value) && at_ - from == count) return true;
     at_ = from;
     return false;
   }
@@ -144,14 +170,11 @@ std::optional<Parsed<CurrTime>> parse_curr_time(std::string_view rest) {
   const auto month = std::find(kMonths.begin(), kMonths.end(), month_name);
   if (weekday == kDays.end() || month == kMonths.end() || !c.take(" ")) return std::nullopt;
   int day{}, hour{}, minute{}, second{}, year{}, mission_time{};
-  const std::size_t blanks = c.blanks();
-  const std::size_t from = c.at();
-  if (!c.whole(day) || !right_aligned(blanks, c.at() - from, 2) || !c.take(" ")) return std::nullopt;
-  if (!c.whole(hour) || !c.take(":") || !c.whole(minute) || !c.take(":") || !c.whole(second) || !c.take(" "))
+  if (!c.field(day, 2) || !c.take(" ")) return std::nullopt;
+  if (!c.digits(hour, 2) || !c.take(":") || !c.digits(minute, 2) || !c.take(":") || !c.digits(second, 2))
     return std::nullopt;
-  if (!c.whole(year) || !c.take(" MT:")) return std::nullopt;
-  c.blanks();
-  if (!c.whole(mission_time) || is_word(c.peek()) || c.peek() == '.') return std::nullopt;
+  if (!c.take(" ") || !c.digits(year, 4) || !c.take(" MT: ")) return std::nullopt;
+  if (!c.field(mission_time, 7) || is_word(c.peek()) || c.peek() == '.') return std::nullopt;
 
   using namespace std::chrono;
   if (year < 1970 || year > 9999 || hour > 23 || minute > 59 || second > 60) return std::nullopt;
@@ -166,6 +189,7 @@ std::optional<Parsed<CurrTime>> parse_curr_time(std::string_view rest) {
 
 std::optional<Parsed<SensorReading>> parse_sensor(std::string_view rest, std::size_t indent) {
   constexpr std::size_t kLabel = 7, kAgeEnds = 57, kLongHead = 45, kIndent = 3;
+  constexpr std::size_t kNewWidth = 13, kOldWidth = 11;  // of the age behind a long head, by firmware
   Cursor c{rest};
   SensorReading out;
   const auto name = c.while_is(is_word);
@@ -179,7 +203,10 @@ std::optional<Parsed<SensorReading>> parse_sensor(std::string_view rest, std::si
   if (blanks == 0 && head <= kLongHead) return std::nullopt;
   if (!c.number(out.age_s)) return std::nullopt;
   const std::size_t size = c.at() - from;
-  if (head <= kLongHead ? !right_aligned(blanks, size, kAgeEnds - head) : blanks == 0) return std::nullopt;
+  const bool aligned = head <= kLongHead
+                           ? right_aligned(blanks, size, kAgeEnds - head)
+                           : right_aligned(blanks, size, kNewWidth) || right_aligned(blanks, size, kOldWidth);
+  if (!aligned) return std::nullopt;
   if (!c.take(" secs ago")) return std::nullopt;
   out.name = name;
   out.unit = unit;
@@ -189,16 +216,16 @@ std::optional<Parsed<SensorReading>> parse_sensor(std::string_view rest, std::si
 std::optional<Parsed<WaypointLine>> parse_waypoint(std::string_view rest) {
   Cursor c{rest};
   WaypointLine out;
+  constexpr std::size_t kDecimals = 4;
   int range{}, bearing{}, hours{}, minutes{};
-  if (!c.take(" (")) return std::nullopt;
-  out.lat_text = c.number();
-  if (!c.take(",")) return std::nullopt;
-  out.lon_text = c.number();
+  if (!c.take(" (") || !c.fixed(out.lat_text, kDecimals) || !c.take(",") || !c.fixed(out.lon_text, kDecimals))
+    return std::nullopt;
   if (!c.take(") Range: ") || !c.whole(range) || !c.take("m, Bearing: ")) return std::nullopt;
   if (!c.whole(bearing, true) || !c.take("deg, Age: ")) return std::nullopt;
   if (!c.whole(hours, true) || !c.take(":") || !c.whole(minutes, true) || !c.take("h:m")) return std::nullopt;
   out.range_m = range;
   out.bearing_deg = bearing;
+  out.age_min = 60.0 * hours + minutes;
   return parsed(std::move(out), c);
 }
 

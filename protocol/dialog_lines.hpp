@@ -25,11 +25,12 @@ struct CurrTime {
   GliderTime time;
   std::int64_t mission_time_s{};
 };
-/// Behind `Curr Time:`. The day of the week must agree with the date: a garbled digit seldom keeps that.
+/// Behind `Curr Time:`: C's `ctime` and ` MT: %7d`, every field in its width. The day of the week must agree with the
+/// date: a garbled digit seldom keeps that.
 std::optional<Parsed<CurrTime>> parse_curr_time(std::string_view rest);
 
-/// Behind `sensor:`. The age must end in column 57, or follow in a field of its own when the head is longer than 45
-/// characters. `indent` is how much of the line stands before the label.
+/// Behind `sensor:`. The age must end in column 57, or follow in a field of 13 (older
+/// firmware: 11) when the head is longer than 45 characters. `indent` is how much of the line stands before the label.
 std::optional<Parsed<SensorReading>> parse_sensor(std::string_view rest, std::size_t indent);
 
 std::optional<Parsed<WaypointLine>> parse_waypoint(std::string_view rest);  ///< behind `Waypoint:`

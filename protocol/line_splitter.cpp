@@ -103,7 +103,13 @@ void LineSplitter::clean_odd(std::string_view text, unsigned kinds, LineSink& si
   if (marker != std::string_view::npos || binary) {
     // The text before a header was printed before the transfer; a connection that opens ends the transfer.
     const std::size_t from = zmodem_ ? 0 : marker;
-    if (from > 0) clean_odd(text.substr(0, from), kControl, sink);
+    if (from > 0) {
+      const bool ending = std::exchange(ending_, true);  // it has no line end: only what needs none is complete
+      before_noise_ = true;
+      clean_odd(text.substr(0, from), kControl, sink);
+      before_noise_ = false;
+      ending_ = ending;
+    }
     zmodem_ = true;
     const std::size_t connection = text.find(kConnection, from);
     discarded_ += std::min(connection, text.size()) - from;
@@ -195,6 +201,7 @@ void LineSplitter::give(std::string_view text, int number, LineSink& sink) {
   line.joined_at = std::exchange(joined_at_, Line::kWhole);
   line.after_block = std::exchange(after_block_, false);
   line.cut = ending_;
+  line.before_noise = before_noise_;
   line.altered = std::exchange(altered_, false);
   sink.take_line(line);
 }

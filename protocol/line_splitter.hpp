@@ -16,6 +16,7 @@ struct Line {
   bool altered{};                 ///< control characters other than NUL and DEL were dropped: one may have been a digit
   bool after_block{};             ///< a dockserver block stood between the line before and this one
   bool cut{};                     ///< ends with the connection or before a marker, not with a line end
+  bool before_noise{};            ///< cut by the beginning of a Zmodem transfer
 };
 
 /// What the dockserver printed into the stream: `<dockserver command="…">TEXT</dockserver>`.
@@ -82,6 +83,7 @@ class LineSplitter {
   int prefix_number_{};
   bool altered_{};      ///< of the line that is cleaned
   bool after_block_{};  ///< a block has just ended
+  bool before_noise_{};
   std::size_t joined_at_{Line::kWhole};
 
   bool zmodem_{};

@@ -34,6 +34,7 @@ struct SensorReading {
 struct WaypointLine {
   std::string lat_text, lon_text;
   double range_m{}, bearing_deg{};
+  double age_min{};  ///< how long the glider has steered there; hours and minutes as printed
   friend bool operator==(const WaypointLine&, const WaypointLine&) = default;
 };
 

@@ -1,6 +1,8 @@
 #include "protocol/dialog_facts.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "protocol/line_splitter.hpp"
 #include "tests/protocol/dialog_text.hpp"
@@ -74,13 +76,53 @@ TEST_CASE("a label without the rest of its line is a fact that is not whole") {
   }
 }
 
-TEST_CASE("a sensor value that spans a join is not trusted when its head is long") {
+TEST_CASE("a sensor line that spans a join is not trusted when its head is long") {
   const std::string line = "   sensor:m_leakdetect_voltage_forward(volts)=2.51318181818182       16.104 secs ago";
   const auto value = line.find('=') + 1;
   CHECK(facts_of(line, value + 4).front().whole == false);
-  CHECK(facts_of(line, value - 9).front().whole);  // the join is in the name
+  CHECK_FALSE(facts_of(line, value - 9).front().whole);  // a name that lost bytes may be another sensor's
+  CHECK_FALSE(facts_of(line, line.find(':') + 1).front().whole);
+  CHECK(facts_of(line, line.find(':') - 2).front().whole);  // in the label: a fixed word
+  CHECK(facts_of(line, line.size() - 3).front().whole);     // in the words behind the age
   const auto aligned = test::sensor_line("m_battery", "volts", 14.9021, 30.25);
   CHECK(facts_of(aligned, aligned.find('=') + 3).front().whole);  // the column proves that nothing is lost
+}
+
+TEST_CASE("of a line of free layout that spans a join nothing is used, whatever it says") {
+  // The line, and the value in it that may have lost a byte where the join is.
+  const std::pair<const char*, const char*> lines[] = {
+      {"Waypoint: (2910.5000,-1530.0000) Range: 17321m, Bearing: 352deg, Age: 1:4h:m", "17321"},
+      {"Waypoint: (2910.5000,-1530.0000) Range: 17321m, Bearing: 352deg, Age: 1:4h:m", "2910"},
+      {"Time until diving is: 235 secs", "235"},
+      {"Extending surface time by 15 minutes", "15"},
+      {"Because:pitch not commanded [behavior surface_14 start_when = 2.0]", "14"},
+      {"MissionName:canary.mi MissionNum:alba-2026-122-4-3 (0112.0003)", "canary"},
+      {"Vehicle Name: alba", "alba"},
+      {"devices:(t/m/s) errs:   0/   0/   0 warn:   1/   0/   0 odd:  47/   2/   1", "47"},
+      {"ABORT HISTORY: total since reset: 12", "12"},
+      {"Glider alba at surface.", "alba"},
+      {"GliderDos A 18 >", "18"},
+      {"Mission completed: MS_COMPLETED_NORMALLY(-1)", "MS_"},
+      {"I heard a character ('CR')", "CR"},
+      {"zModem transfer DONE for file goto_l10.ma", "10"},
+      {"behavior surface_4: ! succeeded:dockzr *", "dockzr"}};
+  for (const auto& [line, value] : lines) {
+    const std::string text{line};
+    const auto whole = facts_of(text);
+    REQUIRE(whole.size() == 1);
+    REQUIRE(whole.front().whole);
+    const auto found = facts_of(text, text.find(value) + 1);
+    INFO(line);
+    REQUIRE(found.size() == 1);
+    CHECK(found.front().say == whole.front().say);
+    CHECK_FALSE(found.front().whole);
+    CHECK(found.front().value.index() == Fact{}.value.index());
+  }
+  CHECK(facts_of("Water Velocity Calculations waiting for final gps fix", 29)
+            .front()
+            .whole);  // fixed words prove themselves
+  CHECK(facts_of("Water Velocity Calculations COMPLETE", 30).front().whole);
+  CHECK(facts_of("Curr Time: Sun May  3 04:10:20 2026 MT:    9000", 31).front().whole);  // so do fixed widths
 }
 
 TEST_CASE("the words of uploads and re-reads can be replaced") {
@@ -92,6 +134,37 @@ TEST_CASE("the words of uploads and re-reads can be replaced") {
   const auto done = facts_of("received goto_l10.ma ok", Line::kWhole, words);
   REQUIRE(done.size() == 1);
   CHECK(std::get<std::string>(done.front().value) == "goto_l10.ma");
+}
+
+TEST_CASE("commands and transfers tell how they ended") {
+  const auto only = [](const std::string& line, const DialogWords& words = {}) {
+    const auto facts = facts_of(line, Line::kWhole, words);
+    REQUIRE(facts.size() == 1);
+    return std::pair{facts.front().say, std::get<std::string>(facts.front().value)};
+  };
+  CHECK(only("  9051 60 ERROR behavior surface_4: ! FAILED: dockzs -num=3") ==
+        std::pair{Say::command_failed, std::string{"dockzs -num=3"}});
+  CHECK(only("  9051    behavior surface_4: ! succeeded:zr") == std::pair{Say::command_succeeded, std::string{"zr"}});
+  CHECK(only("zModem transfer FAILED for file goto_l10.ma") ==
+        std::pair{Say::transfer_failed, std::string{"goto_l10.ma"}});
+  DialogWords words;
+  words.transfer_failed = {"lost: ", "given up: "};
+  words.command_failed = {"cannot: "};
+  words.command_succeeded.clear();
+  CHECK(only("given up: goto_l10.ma after 3 tries", words) ==
+        std::pair{Say::transfer_failed, std::string{"goto_l10.ma"}});
+  CHECK(only("cannot: dockzr *", words) == std::pair{Say::command_failed, std::string{"dockzr *"}});
+  CHECK(facts_of("behavior surface_4: ! succeeded:zr", Line::kWhole, words).empty());
+  CHECK_FALSE(facts_of("zModem transfer DONE for file ").front().whole);
+}
+
+TEST_CASE("the dockserver's words for an empty folder can be replaced") {
+  CHECK(FactFinder{DialogWords{}}.nothing_to_send("\nnot found>*<\n"));
+  CHECK_FALSE(FactFinder{DialogWords{}}.nothing_to_send("1 file sent\n"));
+  DialogWords words;
+  words.nothing_to_send = {"", "empty folder"};
+  CHECK(FactFinder{words}.nothing_to_send("an empty folder"));
+  CHECK_FALSE(FactFinder{words}.nothing_to_send("not found>*<"));
 }
 
 TEST_CASE("keys that somebody typed are named") {

@@ -78,6 +78,18 @@ TEST_CASE("times are read by a table of months and checked by the day of the wee
   CHECK_FALSE(read(" Wed Jun  3 17:45:08 2026"));
   CHECK_FALSE(read(" Wed Jun  3 17:45:08 2026 MT:    72x"));
   CHECK_FALSE(read(" Mi Jun  3 17:45:08 2026 MT:    7207"));
+  CHECK(read(" Wed Jun  3 17:45:08 2026 MT: 12345678"));  // a field only has a least width
+}
+
+TEST_CASE("a time that lost one byte anywhere is damaged") {
+  const std::string rest = " Wed Jun  3 17:45:08 2026 MT:    7207";
+  REQUIRE(parse_curr_time(rest));
+  for (std::size_t i = 0; i < rest.size(); ++i) {
+    auto shorter = rest;
+    shorter.erase(i, 1);
+    INFO("without byte " << i);
+    CHECK_FALSE(parse_curr_time(shorter));
+  }
 }
 
 TEST_CASE("sensor lines of both firmware widths are read") {
@@ -91,6 +103,7 @@ TEST_CASE("sensor lines of both firmware widths are read") {
     CHECK(read(line)->value.value == 2.51318181818182);
   }
   CHECK(read(test::sensor_line("m_charge", "%", 99.5, 3.9))->value.unit == "%");
+  CHECK_FALSE(read(test::sensor_line("m_leakdetect_voltage_forward", "volts", 2.51318181818182, 6.104, 12)));
 }
 
 TEST_CASE("a sensor line that lost a byte before its age is damaged when its age stands in a column") {
@@ -107,10 +120,15 @@ TEST_CASE("a sensor line that lost a byte before its age is damaged when its age
 TEST_CASE("the waypoint line gives latitude first") {
   const auto read = parse_waypoint(" (3715.0000,-230.0000) Range: 18204m, Bearing: 131deg, Age: 12:07h:m");
   REQUIRE(read);
-  CHECK(read->value == WaypointLine{"3715.0000", "-230.0000", 18204, 131});
+  CHECK(read->value == WaypointLine{"3715.0000", "-230.0000", 18204, 131, 727});
   CHECK_FALSE(parse_waypoint(" (3715.0000,-230.0000) Range: 18204m, Bearing: 131deg, Age: 12:07h"));
   CHECK_FALSE(parse_waypoint(" (3715.0000,-230.0000) Range: 1820"));
   CHECK_FALSE(parse_waypoint(" (,) Range: 1m, Bearing: 1deg, Age: 1:1h:"));
+  // A coordinate that lost one of its four decimals, or its point.
+  CHECK_FALSE(parse_waypoint(" (3715.000,-230.0000) Range: 18204m, Bearing: 131deg, Age: 12:07h:m"));
+  CHECK_FALSE(parse_waypoint(" (3715.0000,-2300000) Range: 18204m, Bearing: 131deg, Age: 12:07h:m"));
+  CHECK_FALSE(parse_waypoint(" (3715.0000,-23e.0000) Range: 18204m, Bearing: 131deg, Age: 12:07h:m"));
+  CHECK(parse_waypoint(" (3715.0000,-230.0000) Range: 1m, Bearing: 1deg, Age: 999999999:999999999h:m"));
 }
 
 TEST_CASE("reason, mission, devices, window and prompt lines are read") {

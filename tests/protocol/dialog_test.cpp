@@ -88,7 +88,7 @@ TEST_CASE("an at-surface block is given at its window line, with everything in i
   CHECK(block.console == Console::mission);
   CHECK(block.mission == MissionLine{"CANARY.MI", "alba-2026-122-4-3", "0112.0003"});
   CHECK(block.because == BecauseLine{"pitch not commanded", "surface_4", 2.0});
-  CHECK(block.waypoint == WaypointLine{"2910.5000", "-1530.0000", 17321, 352});
+  CHECK(block.waypoint == WaypointLine{"2910.5000", "-1530.0000", 17321, 352, 64});
   CHECK(block.water == WaterState::complete);
   CHECK(block.until_diving_s == 236);
   CHECK(block.devices->oddities == std::array<int, 3>{7, 2, 1});
@@ -279,8 +279,55 @@ TEST_CASE("windows, transfers, re-reads and keys are said in their order") {
       "<dockserver command=\"!dockzr *\">\n not found>*<\n</dockserver>\n");
   CHECK(heard.events == Events{WindowHeard{108}, WindowExtended{Seconds{300}}, KeyHeard{"CR"},
                                TransferStarted{"goto_l10.ma"}, TransferDone{"goto_l10.ma"}, MafilesReread{},
-                               DockserverBlock{"!dockzr *", "\n not found>*<\n", true}});
+                               DockserverBlock{"!dockzr *", "\n not found>*<\n", true}, NothingToSend{"!dockzr *"}});
   CHECK(heard.counts.dockserver_blocks == 1);
+}
+
+TEST_CASE("how commands and transfers ended is said") {
+  const auto heard = hear(
+      "  9051 60 ERROR behavior surface_4: ! FAILED: dockzs *\r\n"
+      "<dockserver command=\"dockzr *\">\nStarting\n</dockserver>\n"
+      "Starting zModem transfer of goto_l10.ma to/from alba size is 812\r\n"
+      "zModem transfer FAILED for file goto_l10.ma\r\n"
+      "  9080    behavior surface_4: ! succeeded:dockzr *\r\n");
+  CHECK(heard.events == Events{CommandEnded{"dockzs *", false}, DockserverBlock{"dockzr *", "\nStarting\n", true},
+                               TransferStarted{"goto_l10.ma"}, TransferFailed{"goto_l10.ma"},
+                               CommandEnded{"dockzr *", true}});
+  // A block that never ended says nothing for sure.
+  CHECK(hear("<dockserver command=\"dockzr *\">\nnot found>*<\n").events ==
+        Events{DockserverBlock{"dockzr *", "\nnot found>*<\n", false}});
+}
+
+TEST_CASE("a word that the beginning of a transfer cuts is not used") {
+  for (const char* line : {"Vehicle Name: alb", "zModem transfer DONE for file goto_l1", "! succeeded:dockz"}) {
+    const auto heard = hear(std::string{line} + "**B00000000000000\r\nb\r\n");
+    INFO(line);
+    CHECK(heard.events.empty());
+    CHECK(heard.counts.damaged_lines == 1);
+  }
+  CHECK(hear("*^XB0800000000022d\r\nb\r\n").counts.damaged_lines == 0);
+}
+
+TEST_CASE("of a torn line that steers nothing is used unless its layout proves it whole") {
+  const std::string block = "<dockserver command=\"x\">\nt\n</dockserver>";
+  const auto text = test::connection_block() + test::at_surface_block();
+  const auto whole = blocks(hear(text).events).back();
+  const auto torn_at = [&](const std::string& word, std::size_t lost) {
+    auto torn = text;
+    const auto at = torn.find(word);
+    REQUIRE(at != std::string::npos);
+    torn.replace(at, lost, block);
+    return hear_in_chunks(torn, 11);
+  };
+  const auto steers = torn_at("7321m", 1);  // 17321 m would have become 1321 m
+  CHECK_FALSE(blocks(steers.events).back().waypoint);
+  CHECK(blocks(steers.events).back().until_diving_s == whole.until_diving_s);
+  CHECK(steers.counts.damaged_lines == 1);
+  const auto dives = torn_at("36 secs", 1);  // 236 s would have become 26 s
+  CHECK(all<WindowHeard>(dives.events).empty());
+  CHECK_FALSE(blocks(dives.events).back().until_diving_s);
+  CHECK_FALSE(blocks(torn_at("ANARY.MI", 1).events).back().mission);
+  CHECK(all<NameHeard>(torn_at("lba at surface", 1).events) == std::vector{NameHeard{"alba"}});
 }
 
 TEST_CASE("the water velocity is final only when this connection and this dive said so") {

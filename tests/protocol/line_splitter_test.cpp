@@ -134,8 +134,8 @@ TEST_CASE("Zmodem is skipped until plain text comes") {
   CHECK(s.discarded == 17 + 4);
   CHECK(split("START **\x18"
               "B00\nb\n")
-            .lines == Lines{"1:START **", "2:b"});
-  CHECK(split("x**^XB0800000000099dAbout\nb\n").lines == Lines{"1:x**", "2:b"});
+            .lines == Lines{"1:START **!", "2:b"});
+  CHECK(split("x**^XB0800000000099dAbout\nb\n").lines == Lines{"1:x**!", "2:b"});
 }
 
 TEST_CASE("a call that begins inside a transfer is heard") {

@@ -34,6 +34,10 @@ std::string surfacing_line(const SurfacingRecord& r, const GliderPlan& plan) {
   std::string faults;
   if (r.faults.redial) faults += " redialled";
   if (r.faults.no_connection_block) faults += " first block lost";
+  for (const auto& name : struck(r.faults))
+    if (name != "redial" && name != "no_connection_block" && name != "lost_calls" && name != "not_taken")
+      faults += " " + name;
+  if (r.call.partial) faults += " (part of a file on board)";
   return fmt::format("{} {} surfacing {}: fix {:.5f},{:.5f} DAC {} file {} goal {:.1f} km{}", when(r.fix_s),
                      plan.setup.name, r.number, r.fix.lat.degrees(), r.fix.lon.degrees(), current_text(r.water),
                      list_text(r.call), r.to_goal.si() / 1000, faults);
@@ -73,6 +77,8 @@ std::string results_json(const Simulation& simulation, std::uint64_t seed) {
     for (const auto& s : simulation.surfacings(i)) {
       nlohmann::ordered_json row;
       row["number"] = s.number;
+      row["surfaced"] = utc_text(instant_at(s.surfaced_s), true);
+      row["dived"] = utc_text(instant_at(s.dive_s), true);
       row["fix_time"] = utc_text(instant_at(s.fix_s), true);
       row["lat_deg"] = s.fix.lat.degrees();
       row["lon_deg"] = s.fix.lon.degrees();
@@ -81,6 +87,11 @@ std::string results_json(const Simulation& simulation, std::uint64_t seed) {
                   : nlohmann::ordered_json(nullptr);
       row["file"] = s.call.list ? nlohmann::ordered_json(s.call.list->name) : nlohmann::ordered_json(nullptr);
       row["note"] = s.call.error ? s.call.error->message() : s.call.note;
+      row["partial_file"] = s.call.partial;
+      row["faults"] = struck(s.faults);
+      row["connections"] = s.connections;
+      row["bytes"] = s.bytes;
+      row["whole_fixes"] = s.whole_fixes;
       row["to_goal_m"] = s.to_goal.si();
       g["track"].push_back(std::move(row));
     }

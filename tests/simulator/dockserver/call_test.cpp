@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "protocol/dialog.hpp"
 #include "tests/simulator/support.hpp"
 
 using namespace glidehelm;
@@ -263,4 +264,219 @@ TEST_CASE("a transfer that outlasts the window delivers nothing") {
   CHECK_FALSE(scene.call->outcome().list);
   CHECK_FALSE(scene.folder.empty());
   CHECK(scene.call->outcome().note == "the window ended during the transfer");
+}
+
+namespace {
+
+/// What the daemon's reader makes of a dialog.
+struct Heard {
+  std::vector<protocol::SurfaceBlock> blocks;
+  std::vector<int> windows;
+  std::vector<std::string> started, done, keys;
+  int rereads{}, resumed{}, names{};
+  protocol::DialogCounts counts;
+};
+
+Heard heard(const std::vector<std::pair<double, LineEvent>>& events) {
+  protocol::DialogReader reader;
+  Heard h;
+  const auto take = [&](const std::vector<protocol::DialogEvent>& said) {
+    for (const auto& e : said) {
+      if (const auto* block = std::get_if<protocol::BlockRead>(&e)) h.blocks.push_back(block->block);
+      if (const auto* window = std::get_if<protocol::WindowHeard>(&e)) h.windows.push_back(window->seconds);
+      if (const auto* file = std::get_if<protocol::TransferStarted>(&e)) h.started.push_back(file->file);
+      if (const auto* file = std::get_if<protocol::TransferDone>(&e)) h.done.push_back(file->file);
+      if (const auto* key = std::get_if<protocol::KeyHeard>(&e)) h.keys.push_back(key->key);
+      if (std::holds_alternative<protocol::MafilesReread>(e)) ++h.rereads;
+      if (std::holds_alternative<protocol::MissionResumed>(e)) ++h.resumed;
+      if (std::holds_alternative<protocol::NameHeard>(e)) ++h.names;
+    }
+  };
+  for (const auto& [t, e] : events)
+    take(e.kind == LineEvent::Kind::bytes ? reader.append(e.bytes, instant_at(1.7e9 + t))
+                                          : reader.end(instant_at(1.7e9 + t)));
+  take(reader.end(instant_at(1.8e9)));
+  h.counts = reader.counts();
+  return h;
+}
+
+}  // namespace
+
+TEST_CASE("the daemon's reader hears in a call of each generation what the glider said") {
+  for (const auto firmware : {simulator::Firmware::g1, simulator::Firmware::g2, simulator::Firmware::g3}) {
+    Scene scene;
+    CallSetup setup;
+    setup.firmware = firmware;
+    setup.aborts = 2;
+    scene.folder.offer("goto_l10.ma", list_text("0600.0000 4000.0000"));
+    CallFaults harmless;
+    harmless.chatter = harmless.wrong_keys = harmless.science_files = true;
+    harmless.how = 0.1;
+    const auto events = scene.run(harmless, setup);
+    const auto text = text_of(events);
+    const auto h = heard(events);
+    CHECK(h.counts.connections == 1);
+    CHECK(h.counts.at_surface_blocks == static_cast<std::uint64_t>(count_of(text, "Glider sim01 at surface.\r\n")));
+    CHECK(h.counts.gps_lines == static_cast<std::uint64_t>(count_of(text, "\r\nGPS Location:")));
+    CHECK(h.counts.sensor_lines == static_cast<std::uint64_t>(count_of(text, "   sensor:")));
+    CHECK(h.counts.damaged_lines == 0);
+    CHECK(h.names == 1);
+    CHECK(h.rereads == 1);
+    CHECK(h.resumed == 1);
+    CHECK(h.windows.size() == h.counts.at_surface_blocks);
+    const bool g3 = firmware == simulator::Firmware::g3;
+    CHECK(h.started == std::vector<std::string>{g3 ? "00010001.scd" : "00010001.sbd",
+                                                g3 ? "00010001.tcd" : "00010001.tbd", "goto_l10.ma"});
+    CHECK(h.done == h.started);
+    REQUIRE(h.blocks.size() >= 2);
+    const auto fix = scene.glider->fix();
+    for (const auto& block : h.blocks) {
+      const auto accepted = protocol::accept_fix(block, "sim01");
+      REQUIRE(accepted);
+      // 0.001 minute is 1.9 m; rounding errs by half of it in each direction.
+      CHECK(distance(accepted->fix, fix).si() < 1.4);
+      CHECK(accepted->water);
+      if (!accepted->at_surface) continue;
+      CHECK(accepted->water_is_final);
+      CHECK(accepted->mission == "sim.mi");
+      CHECK(accepted->segment == "0001.0001");
+      REQUIRE(accepted->aim);
+      REQUIRE(accepted->because);
+      CHECK(accepted->because->text == "pitch not commanded");
+    }
+  }
+}
+
+TEST_CASE("a dockserver block in mid-line costs nothing when no byte is lost, and at most lines when some are") {
+  simulator::LineNoise noise{{}, simulator::Random{5}};
+  for (int i = 0; i < 40; ++i) {
+    Scene scene;
+    auto events = scene.run();
+    const auto whole = heard(events);
+    const bool lossily = i % 2 == 1;
+    CallFaults faults;
+    (lossily ? faults.injected_lossily : faults.injected) = true;
+    for (auto& [t, e] : events) e.bytes = noise.spoil(e.bytes, faults);
+    const auto torn = heard(events);
+    CAPTURE(i);
+    if (!lossily) {
+      CHECK(torn.counts.gps_lines == whole.counts.gps_lines);
+      CHECK(torn.counts.at_surface_blocks == whole.counts.at_surface_blocks);
+    }
+    CHECK(torn.counts.gps_lines <= whole.counts.gps_lines);
+    for (const auto& block : torn.blocks) {
+      const auto accepted = protocol::accept_fix(block, "sim01");
+      if (accepted) CHECK(distance(accepted->fix, scene.glider->fix()).si() < 1.4);
+    }
+  }
+}
+
+TEST_CASE("a call that is cut ends in mid-line and the script goes no further") {
+  for (const double at : {0.05, 0.3, 0.6, 0.95}) {
+    Scene scene;
+    scene.folder.offer("goto_l10.ma", list_text("0600.0 4000.0"));
+    CallFaults faults;
+    faults.cut = true;
+    faults.at = at;
+    faults.how = 0.37;
+    const auto events = scene.run(faults);
+    REQUIRE_FALSE(events.empty());
+    CHECK(events.back().second.kind == LineEvent::Kind::dropped);
+    CHECK(events.back().first == Approx(45 + at * 240));
+    CHECK(text_of(events).find("RESUMING") == std::string::npos);
+    CHECK(scene.call->dive_s() == Approx(scene.glider->fix_s() + 900));
+    CHECK(scene.call->outcome().list.has_value() == scene.folder.empty());
+  }
+}
+
+TEST_CASE("half open the link falls unnoticed, and the new connection says what a redial says") {
+  Scene scene, other;
+  CallFaults half;
+  half.half_open = true;
+  const auto events = scene.run(half), redial = other.run({.redial = true});
+  REQUIRE(events.size() == redial.size());
+  int abandoned = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    CHECK(events[i].second.bytes == redial[i].second.bytes);
+    if (events[i].second.kind == LineEvent::Kind::abandoned) ++abandoned;
+  }
+  CHECK(abandoned == 1);
+}
+
+TEST_CASE("a glider that hangs up calls again five minutes later with the fix that it had") {
+  Scene scene;
+  CallFaults faults;
+  faults.call_back = true;
+  const auto events = scene.run(faults);
+  const auto text = text_of(events);
+  CHECK(text.find("! succeeded:callback 5") != std::string::npos);
+  CHECK(count_of(text, "Connection Event") == 2);
+  const auto h = heard(events);
+  CHECK(h.counts.connections == 2);
+  for (std::size_t i = 1; i < h.blocks.size(); ++i) CHECK(h.blocks[i].gps->lat_text == h.blocks[0].gps->lat_text);
+}
+
+TEST_CASE("a late script picks the file up late or not at all") {
+  for (const double how : {0.0, 0.5, 0.99}) {
+    Scene scene;
+    scene.folder.offer("goto_l10.ma", list_text("0600.0 4000.0"));
+    CallFaults faults;
+    faults.late_script = true;
+    faults.how = how;
+    const auto events = scene.run(faults);
+    const double at = 165 + 60 + how * 600;
+    CAPTURE(how);
+    if (at + 60 < 838) {
+      CHECK(time_of(events, "!dockzr *") == Approx(at));
+      CHECK(scene.folder.empty());
+    } else {
+      CHECK_FALSE(scene.folder.empty());
+      CHECK_FALSE(scene.call->outcome().list);
+      CHECK_FALSE(scene.call->outcome().note.empty());
+    }
+  }
+}
+
+TEST_CASE(
+    "a torn transfer leaves the first part on the glider and the whole file in the folder until the script is there "
+    "again") {
+  const auto list = list_text("0600.0000 4000.0000");
+  for (const bool calls_again : {true, false}) {
+    Scene scene;
+    scene.folder.offer("goto_l10.ma", list);
+    CallFaults faults;
+    faults.transfer_cut = true;
+    faults.at = 0.5;
+    faults.how = calls_again ? 0.2 : 0.9;
+    std::string part;
+    scene.before = [&](double t) {
+      if (t > 190 && part.empty()) part = scene.on_board;
+    };
+    const auto events = scene.run(faults);
+    CHECK(scene.call->outcome().partial);
+    if (calls_again) {
+      CHECK(part == list.substr(0, list.size() / 2));
+      CHECK(scene.on_board == list);
+      CHECK(scene.folder.empty());
+      CHECK(count_of(text_of(events), "!dockzr *") == 2);
+    } else {
+      CHECK(scene.on_board == list.substr(0, list.size() / 2));
+      CHECK_FALSE(scene.folder.empty());
+      CHECK_FALSE(scene.call->outcome().list);
+      CHECK_FALSE(scene.call->outcome().reread);
+    }
+  }
+}
+
+TEST_CASE("science files come as binary noise and lie in from-glider afterwards") {
+  Scene scene;
+  CallFaults faults;
+  faults.science_files = true;
+  const auto text = text_of(scene.run(faults));
+  REQUIRE(scene.folder.from_glider().size() == 2);
+  for (const auto& file : scene.folder.from_glider()) {
+    CHECK(file.bytes.size() >= 300);
+    CHECK(text.find(file.bytes) != std::string::npos);
+    CHECK(text.find("zModem transfer DONE for file " + file.name) != std::string::npos);
+  }
 }

@@ -34,22 +34,26 @@ Expected<Sample, NoCurrent> CorrectedField::sample(GeoPoint p, Depth z, double t
 }
 
 void CorrectedField::advance(Lanes& lanes, double t_s, double dt) const {
-  std::array<double, Lanes::kMax> east{}, north{};
+  std::array<double, Lanes::kMax> east{}, north{}, before{};
+  const double added_east = correction_.added.east.si(), added_north = correction_.added.north.si();
   for (int i = 0; i < lanes.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     east[k] = lanes.water_east[k];
     north[k] = lanes.water_north[k];
-    const auto metric = LocalMetric::at(lanes.lat[k]);
-    const double w = weight(lanes.lat[k] + 0.5 * dt * north[k] / metric.meridian_radius,
-                            lanes.lon[k] + 0.5 * dt * east[k] / metric.parallel_radius, t_s + 0.5 * dt);
-    lanes.water_east[k] += w * correction_.added.east.si();
-    lanes.water_north[k] += w * correction_.added.north.si();
+    before[k] = weight(lanes.lat[k], lanes.lon[k], t_s);
+    lanes.water_east[k] += before[k] * added_east;
+    lanes.water_north[k] += before[k] * added_north;
   }
   field_.advance(lanes, t_s, dt);
   for (int i = 0; i < lanes.count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     lanes.water_east[k] = east[k];
     lanes.water_north[k] = north[k];
+    if (lanes.lost[k] != 0) continue;
+    const double half = 0.5 * dt * (weight(lanes.lat[k], lanes.lon[k], t_s + dt) - before[k]);
+    const auto metric = LocalMetric::at(lanes.lat[k]);
+    lanes.lat[k] += half * added_north / metric.meridian_radius;
+    lanes.lon[k] += half * added_east / metric.parallel_radius;
   }
 }
 

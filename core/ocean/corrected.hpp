@@ -33,8 +33,8 @@ class CorrectedField {
   [[nodiscard]] Expected<Sample, NoCurrent> sample(GeoPoint p, Depth z, double t_s) const;
   [[nodiscard]] Coverage coverage() const { return field_.coverage(); }
   [[nodiscard]] MetresPerSecond fastest() const { return field_.fastest() + correction_.added.speed(); }
-  /// One step with the kernel of the field itself: the correction of the step's middle is part of the velocity through
-  /// water. Second order in the step; over 1 h at 1 m/s the weight changes by less than 1 %, the error is 1e-5 of it.
+  /// One step with the kernel of the field itself: the correction where the step begins is part of the velocity through
+  /// water, and half of its change to where the step ends is added there (trapezoidal rule, second order in the step).
   void advance(Lanes& lanes, double t_s, double dt) const;
   /// 1 at the centre, falling towards 0. Radians and epoch seconds.
   [[nodiscard]] double weight(double lat, double lon, double t_s) const;

@@ -25,6 +25,7 @@ class FlownMission {
     std::uint64_t seed{1};
     std::function<bool(int surfacing)>
         may_emit;  ///< empty: always; false at a surfacing plays a daemon that has no file for it
+    std::function<void(model::Surfacing&)> heard_as;  ///< changes what the daemon hears; empty: as the glider says it
   };
   struct Surfaced {
     GeoPoint fix;
@@ -48,6 +49,10 @@ class FlownMission {
       run_timers(*next);
       utc_ = *next;
       for (const auto& output : simulation_->step()) take(output.event);
+      if (pilot_.watches_folder() && look().found != found_) {
+        found_ = look().found;
+        feed(look());
+      }
     }
   }
 
@@ -71,14 +76,31 @@ class FlownMission {
     if (const auto* name = std::get_if<protocol::NameHeard>(&event)) name_ = name->name;
     if (const auto* block = std::get_if<protocol::BlockRead>(&event); block != nullptr && block->block.gps) {
       auto s = protocol::accept_fix(block->block, name_);
-      if (s)
-        feed(mission::SurfacingHeard{std::move(s).value(), std::nullopt});
-      else
+      if (!s) {
         feed(mission::FixRefused{s.error()});
+      } else {
+        if (setup_.heard_as) setup_.heard_as(*s);
+        const auto dive = pilot_.dive_under_way();
+        const auto mean =
+            dive ? daemon::mean_along(*forecast_, *dive, s->fix, epoch_seconds(s->fix_taken)) : std::nullopt;
+        feed(mission::SurfacingHeard{std::move(s).value(), std::nullopt, mean});
+      }
     }
     if (const auto* window = std::get_if<protocol::WindowHeard>(&event))
       feed(mission::WindowHeard{Seconds{static_cast<double>(window->seconds)}});
     if (std::holds_alternative<protocol::MissionResumed>(event)) feed(mission::DiveBegan{});
+    if (const auto* started = std::get_if<protocol::TransferStarted>(&event))
+      feed(mission::TransferHeard{started->file, false});
+    if (const auto* done = std::get_if<protocol::TransferDone>(&event)) feed(mission::TransferHeard{done->file, true});
+    if (std::holds_alternative<protocol::MafilesReread>(event)) feed(mission::ListReread{});
+  }
+
+  /// What lies in to-glider: ours when the bytes are the last emitted ones.
+  mission::FolderSeen look() {
+    using Found = mission::FolderSeen::Found;
+    const auto files = folder_.contents(utc_);
+    if (files.empty()) return {Found::nothing, ""};
+    return {!files_.empty() && files.front().bytes == files_.back() ? Found::ours : Found::foreign, files.front().name};
   }
 
   void run_timers(Instant until) {
@@ -136,6 +158,7 @@ class FlownMission {
   void perform(const mission::Emit& e) {
     folder_.offer(e.file.name(), e.file.bytes());
     files_.push_back(e.file.bytes());
+    found_ = mission::FolderSeen::Found::ours;
     for (auto event = events_.rbegin(); event != events_.rend(); ++event)
       if (const auto* found = std::get_if<mission::CandidateFound>(&event->what);
           found != nullptr && found->candidate.file_bytes == e.file.bytes()) {
@@ -145,7 +168,10 @@ class FlownMission {
       }
     waiting_.emplace_back(mission::EmissionEnded{mission::EmissionEnded::Outcome::queued, e.surfacing, "queued"});
   }
-  void perform(const mission::InspectFolder&) { waiting_.emplace_back(mission::FolderSeen{}); }
+  void perform(const mission::InspectFolder&) {
+    found_ = look().found;
+    waiting_.emplace_back(look());
+  }
   void perform(const mission::SetTimer& e) {
     perform(mission::CancelTimer{e.timer});
     timers_.push_back(e);
@@ -163,6 +189,7 @@ class FlownMission {
   ocean::Ocean truth_;
   simulator::MemoryToGlider folder_;
   std::unique_ptr<simulator::Simulation> simulation_;
+  mission::FolderSeen::Found found_{};
   protocol::DialogReader reader_;
   std::string name_;
   mission::Pilot pilot_;

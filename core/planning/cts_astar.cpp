@@ -106,7 +106,7 @@ Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members membe
   if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);
 
   const Metres way = problem.glider.horizontal_speed * problem.schedule.stint;
-  const Metres allowance = (vehicle::early_share(problem.glider.current_correction) + 0.005) * way;
+  const Metres allowance = (vehicle::usual_early_share(problem.glider.current_correction) + 0.005) * way;
   Purse purse{budget};
   auto best = attempt(problem, ocean, chart, purse, allowance);
   // What the chart's margin stopped may be mended by another allowance.

@@ -9,6 +9,8 @@ namespace glidehelm::vehicle {
 
 namespace {
 
+constexpr double kEarlyShareCorrected = 0.01, kEarlyShareUncorrected = 0.05;
+constexpr double kWeakCurrent = 0.1;        // of Û: at the end of a stint about the radius of the list
 constexpr double kShortestLeg = 500.0;      // metres
 constexpr double kHeldOn = 60.0;            // seconds that an arriving heading is held beyond the arrival
 constexpr double kSmallestGoalRing = 10.0;  // metres
@@ -18,6 +20,12 @@ constexpr double kSightPiece = 20'000.0;  // metres: the sagitta of a geodesic o
 Current believed_in(const Flight& flight, const Current& met_before, int k) {
   if (flight.glider.current_correction != 1) return {};
   return k == 0 ? flight.believed_current.value_or(Current{}) : met_before;
+}
+
+/// What stint k meets and the glider, which has measured nothing yet, does not believe in; none once it has measured.
+std::optional<Current> unmeasured_in(const Flight& flight, const Current& expected, std::size_t k) {
+  if (k > 0 || flight.believed_current) return std::nullopt;
+  return expected;
 }
 
 /// Drift to the dive of stint k.
@@ -85,6 +93,21 @@ bool follows(GeoPoint before, GeoPoint aim, double longest, Metres radius) {
   return leg <= longest && leg >= 1.1 * radius.si();
 }
 
+/// Shortens an aim from `dive` whose leg from the point `before` is longer than `longest` metres: a glider that did not
+/// believe in the current of its stint dives far from where that stint's aim lies. Bisection to a metre; nothing where no
+/// part of the way is near enough.
+void bring_within(double longest, GeoPoint before, GeoPoint dive, Aim& aim) {
+  if (distance(before, aim.at).si() <= longest || distance(before, dive).si() > longest) return;
+  const auto bearing = geodesic(dive, aim.at).departing;
+  double near = 0, far = aim.length;
+  while (far - near > 1.0) {
+    const double middle = 0.5 * (near + far);
+    (distance(before, destination(dive, bearing, Metres{middle})).si() <= longest ? near : far) = middle;
+  }
+  aim.length = near;
+  aim.at = destination(dive, bearing, Metres{near});
+}
+
 /// True for a point whose ring holds the goal: it would be hit together with it, and the goal says the same.
 bool stands_for(GeoPoint goal, GeoPoint point, Metres radius) { return distance(point, goal).si() < 1.1 * radius.si(); }
 
@@ -107,6 +130,12 @@ std::vector<GeoPoint> way_points(GeoPoint from, std::span<const Stint> later, Ge
   }
   return points;
 }
+
+/// What a stint begins with, beside its dive point.
+struct Lead {
+  Metres drifted;  ///< since the surfacing before
+  std::optional<Current> unmeasured;
+};
 
 /// How one stint that may arrive is steered.
 struct Steered {
@@ -140,15 +169,16 @@ Steered steer_to_goal(const Flight& flight, const Waters& waters, const State& f
 
 /// On a heading that arrives when held: it is held until then, the goal comes next.
 Steered hold_until_goal(const Flight& flight, const Waters& waters, const State& from, double seconds, Heading wanted,
-                        double arrival_s, Current believed, Metres drifted) {
+                        const Motion& ideal, Current believed, const Lead& lead) {
   // The ring of the aim is crossed early_share before its time, and shall not be before the arrival.
-  const double share = 1 - early_share(flight.glider.current_correction);
-  const double held = std::min(seconds, (arrival_s - from.t_s + kHeldOn) / share);
-  const double leg = aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}, drifted).length;
+  const double share = 1 - early_share(flight.glider, lead.unmeasured);
+  const double held = std::min(seconds, (*ideal.arrival_s - from.t_s + kHeldOn) / share);
+  const double leg =
+      aim_point(from.at(), wanted, flight.glider, believed, held, Metres{0}, lead.drifted, lead.unmeasured).length;
   Steered s;
   // The goal is a point of this list: its ring must lie well inside the disc, or the glider turns before it is there.
   s.radius = std::min(list_radius({leg}, 0, {}), Metres{std::max(kSmallestGoalRing, 0.5 * flight.goal.radius.si())});
-  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius, drifted);
+  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius, lead.drifted, lead.unmeasured);
   s.points = {aim.at};
   if (!aim.ends_list) s.points.push_back(flight.goal.centre);
   s.flown = fly_points(flight, waters, from, seconds, s, believed);
@@ -163,12 +193,12 @@ bool arrives_before(const Steered& s, const Steered& other) {
 /// The steering of a stint that can come to the goal: straight at it or by holding the heading, whichever is there first;
 /// none when neither is there within the stint.
 std::optional<Steered> steer_home(const Flight& flight, const Waters& waters, const State& from, double seconds,
-                                  Heading wanted, const Motion& ideal, Current believed, Metres drifted) {
+                                  Heading wanted, const Motion& ideal, Current believed, const Lead& lead) {
   const double reach = (flight.glider.horizontal_speed + waters.ocean.dive.fastest()).si() * seconds;
   if (distance_near(from.lat, from.lon, flight.goal) > reach + flight.goal.radius.si()) return std::nullopt;
   auto straight = steer_to_goal(flight, waters, from, seconds, believed);
   if (ideal.arrival_s) {
-    auto held = hold_until_goal(flight, waters, from, seconds, wanted, *ideal.arrival_s, believed, drifted);
+    auto held = hold_until_goal(flight, waters, from, seconds, wanted, ideal, believed, lead);
     if (!arrives_before(straight, held) && held.flown.motion.arrival_s) return held;
   }
   return straight.flown.motion.arrival_s ? std::optional{std::move(straight)} : std::nullopt;
@@ -176,10 +206,17 @@ std::optional<Steered> steer_home(const Flight& flight, const Waters& waters, co
 
 }  // namespace
 
-double early_share(int current_correction) { return current_correction == 1 ? 0.01 : 0.05; }
+double usual_early_share(int current_correction) {
+  return current_correction == 1 ? kEarlyShareCorrected : kEarlyShareUncorrected;
+}
+
+double early_share(const model::Glider& glider, const std::optional<Current>& unmeasured) {
+  if (unmeasured && unmeasured->speed() > kWeakCurrent * glider.believed_speed) return kEarlyShareUncorrected;
+  return usual_early_share(glider.current_correction);
+}
 
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
-              Metres radius, Metres drifted) {
+              Metres radius, Metres drifted, const std::optional<Current>& unmeasured) {
   const double u = glider.believed_speed.si();
   const Heading meant = wanted + -glider.heading_bias;  // what the glider must mean to steer
   double east = u * meant.east(), north = u * meant.north();
@@ -190,7 +227,7 @@ Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Curren
   const double speed = std::hypot(east, north);
   const bool against = meant.east() * east + meant.north() * north < 0;
   Aim aim;
-  aim.length = (1 - early_share(glider.current_correction)) * speed * seconds + radius.si();
+  aim.length = (1 - early_share(glider, unmeasured)) * speed * seconds + radius.si();
   const double shortest = std::max(2 * radius.si(), kShortestLeg) + drifted.si();
   aim.ends_list = against || aim.length < shortest;
   aim.length = std::max(aim.length, shortest);
@@ -211,8 +248,8 @@ std::optional<model::WaypointList> arriving_list(const Stint& stint, const Fligh
   const double seconds = stint.surface_s - stint.dive_s;
   const auto believed = believed_in(flight, {}, 0);
   const auto ideal = hold(flight, waters, from, seconds, stint.heading);
-  const auto steered =
-      steer_home(flight, waters, from, seconds, stint.heading, ideal, believed, distance(flight.fix, stint.dive));
+  const auto steered = steer_home(flight, waters, from, seconds, stint.heading, ideal, believed,
+                                  {distance(flight.fix, stint.dive), unmeasured_in(flight, ideal.mean, 0)});
   if (!steered) return std::nullopt;
   list.radius = options.radius.value_or(steered->radius);
   for (const auto& p : steered->points) list.points.push_back({p, model::WaypointRole::aim});
@@ -268,7 +305,8 @@ class ListMaker {
   }
   [[nodiscard]] Aim aim_of(std::size_t k, Metres radius) const {
     const Stint& s = stints_[k];
-    return aim_point(s.dive, s.heading, flight_.glider, believed(k), s.surface_s - s.dive_s, radius, drifted(k));
+    return aim_point(s.dive, s.heading, flight_.glider, believed(k), s.surface_s - s.dive_s, radius, drifted(k),
+                     unmeasured_in(flight_, s.dac, k));
   }
 
   void choose_radius() {
@@ -292,7 +330,8 @@ class ListMaker {
         const double too_long = distance(flight_.fix, aim_of(0, list_.radius).at).si() - longest;
         if (too_long > 0) list_.radius = Metres{std::max(kSmallestRadius, std::floor(list_.radius.si() - too_long))};
       }
-      const auto aim = aim_of(k, list_.radius);
+      auto aim = aim_of(k, list_.radius);
+      if (k > 0) bring_within(longest, list_.points.back().at, stints_[k].dive, aim);
       if (k > 0 && !follows(list_.points.back().at, aim.at, longest, list_.radius)) return true;
       list_.points.push_back({aim.at, WaypointRole::aim});
       if (aim.ends_list) return false;
@@ -435,8 +474,9 @@ class Relay {
       steered = steer_to_goal(flight_, waters_, from, seconds, believed);
     } else {
       const auto ideal = hold(flight_, waters_, from, seconds, *wanted);
-      steered = steer_home(flight_, waters_, from, seconds, *wanted, ideal, believed, drifted_);
-      if (!steered) steered = steer_on(k, from, seconds, *wanted, ideal, believed);
+      const Lead lead{drifted_, unmeasured_in(flight_, ideal.mean, static_cast<std::size_t>(k))};
+      steered = steer_home(flight_, waters_, from, seconds, *wanted, ideal, believed, lead);
+      if (!steered) steered = steer_on(k, from, seconds, *wanted, ideal, believed, lead);
     }
     const Motion& motion = steered->flown.motion;
     const bool too_late = (motion.arrival_s ? *motion.arrival_s : from.t_s + seconds) > flight_.horizon_s;
@@ -458,11 +498,15 @@ class Relay {
   }
 
   /// Towards w_1 and then the second point of the list that this surfacing brings.
-  Steered steer_on(int k, const State& from, double seconds, Heading wanted, const Motion& ideal, Current believed) {
-    const double leg = aim_point(from.at(), wanted, flight_.glider, believed, seconds, Metres{0}, drifted_).length;
+  Steered steer_on(int k, const State& from, double seconds, Heading wanted, const Motion& ideal, Current believed,
+                   const Lead& lead) {
+    const double leg =
+        aim_point(from.at(), wanted, flight_.glider, believed, seconds, Metres{0}, lead.drifted, lead.unmeasured)
+            .length;
     Steered s;
     s.radius = list_radius({leg}, 0, {});
-    const auto aim = aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius, drifted_);
+    const auto aim =
+        aim_point(from.at(), wanted, flight_.glider, believed, seconds, s.radius, lead.drifted, lead.unmeasured);
     s.points = {aim.at};
     if (!aim.ends_list && stands_for(flight_.goal.centre, aim.at, s.radius)) {
       s.points = {flight_.goal.centre};
@@ -491,10 +535,12 @@ class Relay {
     if (!next) return std::nullopt;
     const double seconds = flight_.schedule.stint_length(k + 1).count();
     const Metres drifted{metres_between(ideal.end, dive.end)};
-    const auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius, drifted).at;
+    auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius, drifted);
     const double fastest = std::max({believed_in(flight_, last_.mean, k).speed().si(), ideal.mean.speed().si(),
                                      drift_speed_, dive.mean.speed().si()});
-    return follows(first, aim, longest_leg(flight_, fastest, seconds), radius) ? std::optional{aim} : std::nullopt;
+    const double longest = longest_leg(flight_, fastest, seconds);
+    bring_within(longest, first, dive.end.at(), aim);
+    return follows(first, aim.at, longest, radius) ? std::optional{aim.at} : std::nullopt;
   }
 
   const Helm& helm_;

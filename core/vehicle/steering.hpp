@@ -42,8 +42,13 @@ struct Flight {
   double horizon_s{};  ///< epoch second beyond which nothing is flown
 };
 
-/// The unflown share m of a stint at whose beginning the ring is crossed early: 1 % with correction 1, 5 % with 0.
-double early_share(int current_correction);
+/// The share m of a stint that is left when the ring of its aim is crossed: 5 % with correction 0, 1 % with 1.
+double usual_early_share(int current_correction);
+/// The share of one stint: the usual one, or 5 % for a glider that has measured nothing yet (so that it believes in still
+/// water) and is expected to meet the current `unmeasured`, stronger than a tenth of Û. A ring that is not crossed
+/// because a stint was cut a little short stays the target: where dead reckoning ends far from the place that the glider
+/// is really at, the next dive would turn back (docs/decisions/016).
+double early_share(const model::Glider& glider, const std::optional<Current>& unmeasured);
 
 /// An aim point and what it means for the list.
 struct Aim {
@@ -56,7 +61,7 @@ struct Aim {
 /// correction 1 only. Where g is null the wanted heading serves as its direction. With a heading bias h is the heading that the
 /// glider must mean to steer, the wanted one turned back.
 Aim aim_point(GeoPoint dive, Heading wanted, const model::Glider& glider, Current believed, double seconds,
-              Metres radius, Metres drifted = Metres{0});
+              Metres radius, Metres drifted = Metres{0}, const std::optional<Current>& unmeasured = std::nullopt);
 
 struct ListOptions {
   int max_waypoints{8};          ///< at least 1
@@ -70,8 +75,8 @@ struct ListOptions {
 ///    to the goal needs around land and areas (from each the farthest predicted surfacing in sight and reach), then the goal: an aim
 ///    point that is not hit in time would turn the next dive back. Never more than `max_waypoints`.
 ///  - No leg is longer than 1.09·(Û + largest current believed or drifted in so far)·t_s, so that the written file keeps product.md
-///    7.1, and no aim point lies inside the ring of the one before: where the believed current turns so much from stint to
-///    stint, the goal follows at once. When fix → w_1 would be too long the radius gives way, down to 100 m.
+///    7.1, and no aim point lies inside the ring of the one before: an aim point too far from the one before is
+///    brought nearer to its own dive point; where even that does not do, the goal follows at once. When fix → w_1 would be too long the radius gives way, down to 100 m.
 ///  - A point whose ring would hold the goal is left out: the goal says the same.
 ///  - It ends with the first aim that ends it (`Aim::ends_list`).
 ///  - The goal is left out, and then the last points, as far as the list alone would else run aground or out of the

@@ -12,8 +12,9 @@ namespace {
 
 /// Water from 27 to 30 north and 17 to 14 west, with a square island of 0.2 degrees about 28.0, -15.6.
 std::string coast_file() {
-  const chart::CoastRing island{{{13'000'000, 279'000'000}, {15'000'000, 279'000'000}, {15'000'000, 281'000'000}, {13'000'000, 281'000'000}},
-                                {false, false, false, false}};
+  const chart::CoastRing island{
+      {{13'000'000, 279'000'000}, {15'000'000, 279'000'000}, {15'000'000, 281'000'000}, {13'000'000, 281'000'000}},
+      {false, false, false, false}};
   return (*chart::Coast::make({-170'000'000, -140'000'000, 270'000'000, 300'000'000}, "a test", {island}))->text();
 }
 
@@ -25,13 +26,14 @@ Lines said_of(const std::string& goal, const std::string& more = "") {
   REQUIRE(folder->create("sea.coast", coast_file(), 0644));
   const std::string text = "schema: glidehelm/mission/v1\nname: leg\nglider: sim01\ngoal: " + goal +
                            "\ncurrents: {files: [c.nc]}\nsafety: {coast: sea.coast}\n" + more;
-  const auto mission = config::read_mission(
-      text, "/m/leg.yaml", [](const std::string&) -> Expected<std::string, config::Unreadable> {
+  const auto mission =
+      config::read_mission(text, "/m/leg.yaml", [](const std::string&) -> Expected<std::string, config::Unreadable> {
         return unexpected(config::Unreadable{"no such file"});
       });
   REQUIRE(mission);
   Lines lines;
-  for (const auto& error : daemon::Places{files}.errors_of(*mission, text, "/m/leg.yaml")) lines.push_back(error.message());
+  for (const auto& error : daemon::Places{files}.errors_of(*mission, text, "/m/leg.yaml"))
+    lines.push_back(error.message());
   return lines;
 }
 
@@ -63,7 +65,9 @@ TEST_CASE("a start is judged like a goal, and both are told at once") {
 }
 
 TEST_CASE("areas count as the coast does") {
-  const std::string box = "[[{lat_deg: 28.9, lon_deg: -14.7}, {lat_deg: 28.9, lon_deg: -14.5}, {lat_deg: 29, lon_deg: -14.5}, {lat_deg: 29, lon_deg: -14.7}]]";
+  const std::string box =
+      "[[{lat_deg: 28.9, lon_deg: -14.7}, {lat_deg: 28.9, lon_deg: -14.5}, {lat_deg: 29, lon_deg: -14.5}, {lat_deg: "
+      "29, lon_deg: -14.7}]]";
   const auto with = [&](const std::string& key, const std::string& goal) {
     test::MemoryFiles files;
     const std::string text = "schema: glidehelm/mission/v1\nname: leg\nglider: sim01\ngoal: " + goal +
@@ -81,8 +85,9 @@ TEST_CASE("areas count as the coast does") {
 
 TEST_CASE("a coast file that cannot be read or is none is an error of its key") {
   test::MemoryFiles files;
-  const std::string text = "schema: glidehelm/mission/v1\nname: leg\nglider: sim01\ngoal: {lat_deg: 28, lon_deg: -15}\n"
-                           "currents: {files: [c.nc]}\nsafety: {coast: /nowhere/sea.coast}\n";
+  const std::string text =
+      "schema: glidehelm/mission/v1\nname: leg\nglider: sim01\ngoal: {lat_deg: 28, lon_deg: -15}\n"
+      "currents: {files: [c.nc]}\nsafety: {coast: /nowhere/sea.coast}\n";
   const auto mission = config::read_mission(text, "leg.yaml", {});
   REQUIRE(mission);
   const auto errors = daemon::Places{files}.errors_of(*mission, text, "leg.yaml");

@@ -85,6 +85,18 @@ TEST_CASE("an aim point lies along the believed course, one radius beyond the fl
   }
 }
 
+TEST_CASE("before a glider has measured a current that is there, the ring comes earlier in the stint") {
+  // A tenth of 0.3 m/s.
+  CHECK(vehicle::early_share(glider(1), current(0, 0.029)) == 0.01);
+  CHECK(vehicle::early_share(glider(1), current(0, 0.031)) == 0.05);
+  CHECK(vehicle::early_share(glider(1), std::nullopt) == 0.01);
+  CHECK(vehicle::early_share(glider(0), std::nullopt) == 0.05);
+  const auto dive = geo_point(28, -16);
+  const double t = 4 * 3600;
+  CHECK(aim_point(dive, Heading{degrees(90)}, glider(1), current(0, 0), t, Metres{400}, Metres{0}, current(0.2, 0))
+            .length == Approx(0.95 * 0.3 * t + 400));
+}
+
 TEST_CASE("against a believed current stronger than the glider the aim lies up-current and ends the list") {
   const auto dive = geo_point(28, -16);
   const auto aim = aim_point(dive, Heading{degrees(0)}, glider(1), current(0.1, -0.5), 14400, Metres{300});
@@ -280,9 +292,13 @@ TEST_CASE("a plan's next surfacing is that of its list flown by the verifier") {
         REQUIRE_FALSE(alone.stints.empty());
         // Both fly the same law, one with steps of 2 min, one of 1 min, through fields of at most 6e-5 1/s: centimetres.
         CHECK(distance(independent(list, s).surfaced, alone.stints[0].surface).si() < 2.0);
-        // The plan's w_2 stands in for the list's after the ring of w_1: with correction 1 it is computed from the held
-        // heading, up to m·stint = 1 % of 8 km steered by a few degrees otherwise.
-        CHECK(distance(alone.stints[0].surface, plan.stints[0].surface).si() < 15.0);
+        // The plan's w_2 stands in for the list's after the ring of w_1. Where 5 % of 8 km are left, 400 m: both are
+        // dived for from ends that differ by what those 400 m are turned (50 degrees: 310 m), which is seen from the ring,
+        // a leg of 4 to 8 km before w_2, as at most 310/4000 = 4.4 degrees, and twice that when w_2 is shortened:
+        // 400·sin 8.8 degrees = 61 m. With 1 %, a fifth.
+        const double share = vehicle::early_share(
+            s.flight.glider, s.flight.believed_current ? std::nullopt : std::optional{plan.stints[0].dac});
+        CHECK(distance(alone.stints[0].surface, plan.stints[0].surface).si() < 61.0 * share / 0.05);
       }
     }
 }

@@ -254,9 +254,24 @@ void Session::hear(const protocol::DialogEvent& event) {
       if (lower(e.file).ends_with(session.emitter_->file_name())) session.emitter_->set_transfer_open(false);
       session.feed(mission::TransferHeard{e.file, true});
     }
-    void operator()(const protocol::TransferFailed&) const {}
-    void operator()(const protocol::CommandEnded&) const {}
-    void operator()(const protocol::NothingToSend&) const {}
+    void operator()(const protocol::TransferFailed& e) const {
+      if (!lower(e.file).ends_with(session.emitter_->file_name())) return;
+      session.emitter_->set_transfer_open(false);
+      session.desk_.log.alert(session.entry_.name,
+                              fmt::format("the transfer of {} failed: half of it may be on the glider, send it again "
+                                          "before Ctrl-F",
+                                          e.file));
+    }
+    void operator()(const protocol::CommandEnded& e) const {
+      if (!e.succeeded)
+        session.desk_.log.warn(session.entry_.name, "the glider refused the command: " + e.command.substr(0, 80));
+    }
+    void operator()(const protocol::NothingToSend& e) const {
+      session.desk_.log.info(session.entry_.name,
+                             fmt::format("'{}' found no file in to-glider: a list that comes now waits for the next "
+                                         "surfacing",
+                                         e.command.substr(0, 80)));
+    }
     void operator()(const protocol::MafilesReread&) const { session.feed(mission::ListReread{}); }
     void operator()(const protocol::AbortSeen& e) const {
       session.desk_.log.alert(session.entry_.name,

@@ -53,7 +53,8 @@ void merge(ReplayedFix& fix, ReplayedFix&& again) {
   fix.at_surface = fix.at_surface || again.at_surface;
   if (again.until_diving_s) fix.until_diving_s = again.until_diving_s;
   if (again.aim) fix.aim = again.aim;
-  if (again.water) {
+  // A call-back begins without the word that the velocity is final; it is no less so.
+  if (again.water && (again.water_is_final || !fix.water_is_final)) {
     fix.water = again.water;
     fix.water_is_final = again.water_is_final;
   }

@@ -14,6 +14,7 @@ using std::chrono::milliseconds;
 
 constexpr std::int64_t kFirstTick = 1000;  // any positive monotonic start will do
 constexpr milliseconds kLastBytes{300};    // for the last bytes before a link falls
+constexpr milliseconds kAskAgain{20};
 constexpr int kInterrupt = 2, kTerminate = 15;
 
 milliseconds as_ms(double seconds) { return milliseconds{static_cast<std::int64_t>(std::ceil(seconds * 1e3))}; }
@@ -78,6 +79,7 @@ void Runner::end(RunOutcome outcome, const std::string& why) {
   if (!why.empty()) say(why);
   if (watchdog_) wall_.cancel(*watchdog_);
   if (pacer_) wall_.cancel(*pacer_);
+  if (poll_) wall_.cancel(*poll_);
   net_.stop();
 }
 
@@ -109,7 +111,21 @@ bool Runner::daemon_must_dial() const {
                                            [](const auto& line) { return line->open() || !line->address().connect; });
 }
 
+/// Whether the daemon has a timer for its next dial is known only when it says so after it has noticed that the line is gone: it
+/// is asked again and again at the same simulated time, for daemon_wait_s of wall time.
+void Runner::wait_for_a_dial() {
+  if (poll_) return;
+  if (!missing_since_) missing_since_ = wall_.tick();
+  if (wall_.tick() - *missing_since_ > as_ms(pace_.daemon_wait_s))
+    return end(RunOutcome::no_daemon, "no daemon: nobody dialled a line that it was to dial");
+  poll_ = wall_.call_at(wall_.tick() + kAskAgain, [this] {
+    poll_.reset();
+    if (state_ == State::waiting && clock_.connected()) tell(State::told_time);
+  });
+}
+
 bool Runner::greet_again() {
+  missing_since_.reset();
   bool any = false;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     if (!to_greet_[i]) continue;
@@ -159,8 +175,9 @@ void Runner::proceed() {
   if (!event) return end(RunOutcome::finished, {});
   Instant target = *event;
   if (!everybody_there()) {
-    // The daemon's own back-off has to pass before it dials; what the glider does waits for it.
-    if (!daemon_must_dial() || !next_timer_ms_ || start_ + milliseconds{*next_timer_ms_ - kFirstTick} > target) return;
+    if (!daemon_must_dial()) return;
+    const bool timer_first = next_timer_ms_ && start_ + milliseconds{*next_timer_ms_ - kFirstTick} <= target;
+    if (!timer_first) return wait_for_a_dial();
   } else if (greet_again()) {
     return;
   }

@@ -69,6 +69,7 @@ class Runner {
   void on_daemon_lost();
   void let_it_happen();
   void let_links_fall();
+  void wait_for_a_dial();
   [[nodiscard]] bool greet_again();
   [[nodiscard]] bool daemon_must_dial() const;
   void free_running();
@@ -100,7 +101,8 @@ class Runner {
   ClockServer clock_;
   State state_{State::waiting};
   std::optional<std::int64_t> next_timer_ms_;
-  std::optional<world::TimerId> watchdog_, pacer_;
+  std::optional<world::TimerId> watchdog_, pacer_, poll_;
+  std::optional<Tick> missing_since_;
   Tick wall_start_{}, asked_at_{};
   bool started_{};
   RunOutcome outcome_{RunOutcome::failed};

@@ -153,9 +153,9 @@ struct Simulation::Life {
       const auto line = bytes.substr(at, end == std::string::npos ? end : end - at);
       double age = 0;
       int used = 0;
-      constexpr std::size_t kLength = 75;  // "%-13s %9.3f N %9.3f E measured %10.6g secs ago\r"
       const bool glued = at > 0 && std::isalpha(static_cast<unsigned char>(bytes[at - 1])) != 0;
-      if (!glued && end != std::string::npos && line.size() >= kLength - 4 && line.size() <= kLength &&
+      // A line that lost or gained a byte is not whole, though it may read like one.
+      if (!glued && end != std::string::npos && line.size() + 1 == fix.size() &&
           std::sscanf(line.c_str() + head.size(), " measured %lf secs ago%n", &age, &used) == 1 &&
           head.size() + static_cast<std::size_t>(used) + 1 == line.size())
         ++count;

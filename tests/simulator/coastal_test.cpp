@@ -139,3 +139,19 @@ TEST_CASE("no current is faster than the bound") {
     for (double lon = 3.02; lon < 5.5; lon += 0.07)
       CHECK(field.sample(geo_point(lat, lon), Depth{}, 1.7e9 + 3e4)->current.speed() <= field.fastest());
 }
+
+TEST_CASE("jets and eddies fade with depth as stated, the tide does not") {
+  auto spec = sea();
+  spec.fading_m = 200;
+  const CoastalField field{spec, Variant::truth};
+  spec.eddy = spec.jet = spec.counter_jet = spec.noise = 0;
+  const CoastalField tide{spec, Variant::truth};
+  const auto p = geo_point(41.0, 4.2);
+  const auto at = [&](const CoastalField& f, double z) {
+    return f.sample(p, Depth{Metres{z}}, spec.start_s + 5e4)->current;
+  };
+  CHECK(at(tide, 300) == at(tide, 0));
+  const double top = at(field, 0).east.si() - at(tide, 0).east.si();
+  CHECK(std::fabs(top) > 0.01);
+  CHECK(at(field, 300).east.si() - at(tide, 300).east.si() == Approx(top * std::exp(-1.5)));
+}

@@ -57,7 +57,10 @@ struct FakeDaemon {
                      if (on_bytes) on_bytes(std::string{bytes});
                      if (clock && answers) clock->handled("sim01", received);
                    },
-                   [](std::string_view) {}});
+                   [this](std::string_view) {
+                     if (on_ended) on_ended();
+                   }});
+    if (on_adopt) on_adopt(stream);
   }
   [[nodiscard]] std::uint16_t port() const { return listener->port(); }
 
@@ -68,6 +71,8 @@ struct FakeDaemon {
   std::unique_ptr<world::Listener> listener;
   std::shared_ptr<world::Stream> stream;
   std::function<void(const std::string&)> on_bytes;
+  std::function<void()> on_ended;
+  std::function<void(const std::shared_ptr<world::Stream>&)> on_adopt;
   std::string text;
   std::uint64_t received{};
   int connections{}, lives{};
@@ -82,15 +87,15 @@ struct Scene {
     sim.emplace(std::vector<Simulation::Member>{{std::move(plan), folder.get()}}, ocean::Ocean{kStill, kStill}, kOpen,
                 end, 1);
   }
-  RunOutcome run(Pace pace, std::uint16_t port) {
+  RunOutcome run(Pace pace, std::uint16_t port, bool we_dial = true) {
     Runner runner{world.net,
                   world.clock,
                   *sim,
-                  {{"sim01", {true, "127.0.0.1", port}, folder.get()}},
+                  {{"sim01", {we_dial, "127.0.0.1", port}, folder.get()}},
                   kStart,
                   std::move(pace),
                   {[this](const SurfacingRecord& r) { told.push_back(r.number); },
-                   [this](const std::string& s) { said += s + "\n"; }}};
+                   [this](const std::string& s) { said += s + "\n"; }, [this](Instant now) { times.push_back(now); }}};
     return runner.run();
   }
   [[nodiscard]] std::string socket() const { return (temp.path / "c").string(); }
@@ -101,6 +106,7 @@ struct Scene {
   std::unique_ptr<DockFolder> folder;
   std::optional<Simulation> sim;
   std::vector<int> told;
+  std::vector<Instant> times;
   std::string said;
 };
 
@@ -124,6 +130,8 @@ TEST_CASE("in lockstep a whole run takes no wall time to speak of, and every byt
   REQUIRE(scene.run(scene.lockstep(), daemon.port()) == RunOutcome::finished);
   CHECK(scene.sim->all_arrived());
   CHECK(scene.told.size() == scene.sim->surfacings(0).size());
+  CHECK(std::is_sorted(scene.times.begin(), scene.times.end()));
+  CHECK(scene.times.size() > blocks.size());
   CHECK(daemon.received > 10'000);
   REQUIRE(blocks.size() > 13);
   // The first at-surface block: 60 s to the last fix, 45 s to the call, 15 s to the block; then one a minute.
@@ -171,6 +179,62 @@ TEST_CASE("a redial closes the line after its last bytes and comes on a new conn
   daemon.come_to_life();
   REQUIRE(scene.run(scene.lockstep(), daemon.port()) == RunOutcome::finished);
   CHECK(daemon.connections == 2);
+}
+
+TEST_CASE("half open, the older connection stays open while the new one speaks") {
+  auto plan = short_way();
+  plan.line.half_open.surfacings = {1};
+  Scene scene{plan, EndPlan{true, 1, std::nullopt}};
+  FakeDaemon daemon{scene.world, scene.socket()};
+  int ended = 0;
+  std::vector<std::shared_ptr<world::Stream>> kept;
+  daemon.on_adopt = [&](const std::shared_ptr<world::Stream>& s) { kept.push_back(s); };
+  daemon.on_ended = [&] { ++ended; };
+  int ended_at_the_redial = -1;
+  daemon.on_bytes = [&](const std::string& bytes) {
+    if (daemon.connections == 2 && bytes.find("Carrier Detect") != std::string::npos) ended_at_the_redial = ended;
+  };
+  daemon.come_to_life();
+  REQUIRE(scene.run(scene.lockstep(), daemon.port()) == RunOutcome::finished);
+  CHECK(daemon.connections == 2);
+  CHECK(ended_at_the_redial == 0);
+}
+
+TEST_CASE("a line that was dialled again begins with an empty line, and time waits until it is read") {
+  auto plan = short_way();
+  plan.redial.surfacings = {1};
+  Scene scene{plan, EndPlan{true, 1, std::nullopt}};
+  FakeDaemon daemon{scene.world, scene.socket()};
+  std::vector<std::pair<std::int64_t, std::string>> second;
+  daemon.on_bytes = [&](const std::string& bytes) {
+    if (daemon.connections == 2) second.emplace_back((daemon.clock->utc() - kStart).count(), bytes);
+  };
+  daemon.come_to_life();
+  REQUIRE(scene.run(scene.lockstep(), daemon.port()) == RunOutcome::finished);
+  REQUIRE(second.size() > 2);
+  // The link falls 60 + 45 + 15 + 20 s after the start, the glider calls again 45 s later.
+  CHECK(second[0] == std::pair<std::int64_t, std::string>{140'000, "\r\n"});
+  CHECK(second[1].first == 185'000);
+}
+
+TEST_CASE("a daemon that dials has its back-off timer fired before the glider goes on") {
+  auto plan = short_way();
+  plan.redial.surfacings = {1};
+  Scene scene{plan, EndPlan{true, 1, std::nullopt}};
+  FakeDaemon daemon{scene.world, scene.socket()};
+  const auto port = daemon.port();
+  daemon.listener.reset();  // the port is the simulator's now, and the daemon dials
+  std::function<void()> dial = [&] {
+    scene.world.net.connect_tcp("127.0.0.1", port, [&](Expected<std::shared_ptr<world::Stream>, world::NetError> s) {
+      REQUIRE(s);
+      daemon.adopt(*s);
+    });
+  };
+  daemon.on_ended = [&] { daemon.clock->call_at(daemon.clock->tick() + std::chrono::milliseconds{1200}, dial); };
+  daemon.come_to_life(dial);
+  REQUIRE(scene.run(scene.lockstep(), port, false) == RunOutcome::finished);
+  CHECK(daemon.connections == 2);
+  CHECK(daemon.text.find("RESUMING MISSION") != std::string::npos);
 }
 
 TEST_CASE("without a daemon the run gives up after its patience") {

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 
 using namespace glidehelm;
@@ -161,6 +163,91 @@ TEST_CASE("gliders of one scenario draw from different seeds") {
                                "s.yaml");
   REQUIRE(s);
   CHECK(s->gliders[0].plan.setup.seed != s->gliders[1].plan.setup.seed);
+}
+
+TEST_CASE("a fleet of a few lines is many gliders with places, ports, folders and seeds of their own") {
+  const std::string text =
+      "schema: glidehelm/scenario/v1\nstart: 2026-03-01T00:00:00Z\ntruth: {still: true}\n"
+      "fleet:\n  count: 50\n  area: {west_deg: 4, east_deg: 6, south_deg: 39, north_deg: 41}\n  leg_km: 60\n"
+      "  connect: \"127.0.0.1:7000\"\n  each:\n    schedule: {stint_h: 6}\n    faults: {garbled: {probability: 0.5}}\n";
+  const auto s = read_scenario(text, "/x/s.yaml");
+  REQUIRE(s);
+  REQUIRE(s->gliders.size() == 50);
+  std::set<std::string> names, folders;
+  std::set<std::uint64_t> seeds;
+  std::map<simulator::Firmware, int> firmware;
+  for (std::size_t i = 0; i < 50; ++i) {
+    const auto& g = s->gliders[i];
+    names.insert(g.plan.setup.name);
+    folders.insert(g.folder);
+    seeds.insert(g.plan.setup.seed);
+    ++firmware[g.plan.call.firmware];
+    CHECK(g.line == simulator::LineAddress{true, "127.0.0.1", static_cast<std::uint16_t>(7000 + i)});
+    CHECK(g.plan.setup.stint_s == 6 * 3600);
+    CHECK(g.plan.line.garbled.probability == 0.5);
+    CHECK(g.plan.setup.start_s >= epoch_seconds(s->start));
+    CHECK(g.plan.setup.start_s < epoch_seconds(s->start) + 4 * 3600);
+    for (const auto p : {g.plan.setup.start, g.plan.goal}) {
+      CHECK(p.lat.degrees() > 39);
+      CHECK(p.lat.degrees() < 41);
+      CHECK(p.lon.degrees() > 4);
+      CHECK(p.lon.degrees() < 6);
+    }
+    CHECK(distance(g.plan.setup.start, g.plan.goal).si() == Approx(60e3).epsilon(1e-6));
+  }
+  CHECK(names.size() == 50);
+  CHECK(folders.size() == 50);
+  CHECK(seeds.size() == 50);
+  CHECK(firmware[simulator::Firmware::g1] == 5);
+  CHECK(s->gliders[0].plan.setup.name == "g01");
+  CHECK(s->gliders[49].folder == "/x/run/g50");
+  const auto again = read_scenario(text, "/x/s.yaml"), other = read_scenario(text, "/x/s.yaml", 9);
+  CHECK(again->gliders[7].plan.goal == s->gliders[7].plan.goal);
+  CHECK(other->gliders[7].plan.goal != s->gliders[7].plan.goal);
+}
+
+TEST_CASE("an ocean's error, forecasts and faults are read in their units") {
+  const auto s =
+      read_scenario(with("truth: {still: true}",
+                         "truth: {still: true, error: {shift_km: 5, noise_m_per_s: 0.05, tide_m_per_s: 0.1}}\n"
+                         "forecasts: {folder: f, area: {west_deg: 4, east_deg: 6, south_deg: 39, north_deg: 41}, "
+                         "every_h: 12, depths_m: "
+                         "[0, 100]}") +
+                        "    dialog: {firmware: g2, aborts: 4}\n"
+                        "    faults: {cut: {surfacings: [3]}, slow: {probability: 0.1}, slow_bytes_per_s: 60, "
+                        "garbled_per_kilobyte: 2}\n",
+                    "/x/s.yaml", 6);
+  REQUIRE(s);
+  REQUIRE(s->truth.error);
+  CHECK(s->truth.error->shift_km == 5);
+  CHECK(s->truth.error->seed == 6);
+  CHECK(s->forecasts.folder == "/x/f");
+  CHECK(s->forecasts.every_h == 12);
+  CHECK(s->forecasts.grid.depths_m == std::vector{0.0, 100.0});
+  const auto& g = s->gliders[0].plan;
+  CHECK(g.call.firmware == simulator::Firmware::g2);
+  CHECK(g.call.aborts == 4);
+  CHECK(g.line.cut.surfacings == std::vector{3});
+  CHECK(g.line.slow.probability == 0.1);
+  CHECK(g.line.setup == simulator::LineSetup{60, 2});
+}
+
+TEST_CASE("fleets, errors and forecasts that cannot be are refused with the reason") {
+  const std::string none = "schema: glidehelm/scenario/v1\nstart: 2026-03-01T00:00:00Z\ntruth: {still: true}\n";
+  CHECK(errors_of(none).find("no glider") != std::string::npos);
+  const std::string area = "area: {west_deg: 4, east_deg: 6, south_deg: 39, north_deg: 41}";
+  CHECK(errors_of(none + "fleet: {count: 3, area: {west_deg: 6, east_deg: 4, south_deg: 39, north_deg: 41}}\n")
+            .find("no width of an area") != std::string::npos);
+  CHECK(errors_of(none + "fleet: {count: 3, connect: \"a:65534\", " + area + "}\n").find("ports for all of them") !=
+        std::string::npos);
+  CHECK(errors_of(kSmall + "forecasts: {" + area + "}\n").find("no folder") != std::string::npos);
+  CHECK(errors_of(kSmall + "forecasts: {folder: f, depths_m: [0, 50, 50], " + area + "}\n").find("do not rise") !=
+        std::string::npos);
+  CHECK(errors_of(kSmall + "forecasts: {folder: f, step_deg: 0.002, " + area + "}\n").find("20 million") !=
+        std::string::npos);
+  CHECK(errors_of(with("{still: true}", "{still: true, error: {longest_km: 5}}")).find("longer than longest_km") !=
+        std::string::npos);
+  CHECK(errors_of(kSmall + "    dialog: {firmware: g4}\n").find("g1") != std::string::npos);
 }
 
 TEST_CASE("every example scenario is read") {

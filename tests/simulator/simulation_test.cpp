@@ -147,3 +147,94 @@ TEST_CASE("faults strike the surfacings that they name, and by chance as often a
   // Binomial(400, 0.3): mean 120, deviation 9.2; four deviations.
   CHECK(std::abs(struck - 120) < 37);
 }
+
+namespace {
+
+/// Everything that came over the line of one glider: epoch seconds and events.
+std::vector<std::pair<double, simulator::LineEvent>> events_of(Simulation& sim) {
+  std::vector<std::pair<double, simulator::LineEvent>> all;
+  while (const auto next = sim.next_event())
+    for (auto& o : sim.step()) all.emplace_back(epoch_seconds(*next), std::move(o.event));
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a slow line passes its bytes second by second and in order") {
+  const auto fly = [](bool slow) {
+    MemoryToGlider folder;
+    auto plan = plan_to(200);
+    if (slow) plan.line.slow.surfacings = {1};
+    plan.line.setup.slow_bytes_per_s = 100;
+    Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 1, std::nullopt}, 1};
+    return events_of(sim);
+  };
+  const auto fast = fly(false), slow = fly(true);
+  std::string at_once, spread;
+  for (const auto& [t, e] : fast) at_once += e.bytes;
+  for (const auto& [t, e] : slow) {
+    CHECK(e.bytes.size() <= 500);  // 5 s of 100 bytes
+    spread += e.bytes;
+  }
+  CHECK(spread == at_once);
+  // A second never passes more than it may: of any two pieces the later is 5 s later, but for the first of a print.
+  CHECK(slow.size() > 2 * fast.size());
+  CHECK(slow[1].first - slow[0].first == Approx(5).margin(1e-2));
+}
+
+TEST_CASE("each connection has a log that holds its bytes, named by when it began") {
+  MemoryToGlider folder;
+  auto plan = plan_to(200);
+  plan.redial.surfacings = {1};
+  plan.call.firmware = simulator::Firmware::g1;
+  Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 2, std::nullopt}, 1};
+  std::string all;
+  for (const auto& [t, e] : events_of(sim)) all += e.bytes;
+  REQUIRE(folder.logs().size() == 3);
+  std::string logged;
+  for (const auto& log : folder.logs()) {
+    CHECK(log.glider == "sim01");
+    CHECK(log.medium == "modem");
+    logged += log.bytes;
+  }
+  CHECK(logged == all);
+  CHECK(epoch_seconds(folder.logs()[0].opened) == Approx(1.7e9 + 105));
+  CHECK(epoch_seconds(folder.logs()[1].opened) == Approx(1.7e9 + 105 + 15 + 20 + 45));
+  CHECK(sim.surfacings(0)[0].connections == 2);
+  CHECK(sim.surfacings(0)[0].bytes + sim.surfacings(0)[1].bytes == all.size());
+}
+
+TEST_CASE("the simulator counts the fix lines that left whole") {
+  const auto fly = [](const std::function<void(GliderPlan&)>& change) {
+    MemoryToGlider folder;
+    auto plan = plan_to(200);
+    change(plan);
+    Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 1, std::nullopt}, 1};
+    while (sim.next_event()) sim.step();
+    return sim.surfacings(0)[0].whole_fixes;
+  };
+  CHECK(fly([](GliderPlan&) {}) == 14);  // the connection block and 13 at the surface
+  CHECK(fly([](GliderPlan& p) { p.lost_calls.surfacings = {1}; }) == 0);
+  CHECK(fly([](GliderPlan& p) { p.line.duplicated.surfacings = {1}; }) == 28);
+  const int garbled = fly([](GliderPlan& p) {
+    p.line.garbled.surfacings = {1};
+    p.line.setup.garbled_per_kilobyte = 20;
+  });
+  // A line of 76 bytes stays whole with e^(−0.02·76) = 22 %: of 14 lines 3, and not all of them.
+  CHECK(garbled < 10);
+}
+
+TEST_CASE("the older faults strike when they did before the newer ones were there") {
+  const auto struck = [](bool more) {
+    MemoryToGlider folder;
+    auto plan = plan_to(300);
+    plan.lost_calls.probability = 0.3;
+    if (more) plan.line.garbled.probability = plan.line.wrong_keys.probability = 0.5;
+    Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 12, std::nullopt}, 5};
+    while (sim.next_event()) sim.step();
+    std::vector<bool> lost;
+    for (const auto& r : sim.surfacings(0)) lost.push_back(r.faults.lost);
+    return lost;
+  };
+  CHECK(struck(false) == struck(true));
+}

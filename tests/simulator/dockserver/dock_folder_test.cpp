@@ -87,3 +87,16 @@ TEST_CASE("trouble with the files is told once") {
   CHECK((*dock)->take_trouble().find("never_was.ma") != std::string::npos);
   CHECK((*dock)->take_trouble().empty());
 }
+
+TEST_CASE("files from the glider and logs of calls lie where a dockserver keeps them") {
+  TempFolder temp;
+  world::RealFiles files;
+  auto dock = DockFolder::make(files, (temp.path / "d").string());
+  REQUIRE(dock);
+  (*dock)->received({"00010002.scd", "binary"}, kNow);
+  (*dock)->received({"00010002.scd", "again"}, kNow);  // fetched again after a redial
+  (*dock)->logged({"sim01", "network_net_0", kNow, "what was heard"});
+  CHECK(temp.read("d/from-glider/00010002.scd") == "again");
+  CHECK(temp.read("d/logs/sim01_20260301T040506_network_net_0.log") == "what was heard");
+  CHECK((*dock)->take_trouble().empty());
+}

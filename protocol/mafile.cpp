@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "protocol/latlon.hpp"
+#include "protocol/mafile_b_args.hpp"
 #include "protocol/mafile_lexer.hpp"
 #include "protocol/mafile_rules.hpp"
 
@@ -237,6 +238,12 @@ bool Mafile::valid() const {
 const BArg* Mafile::b_arg(std::string_view name) const {
   const auto found = std::find_if(b_args.rbegin(), b_args.rend(), [&](const BArg& a) { return a.name == name; });
   return found == b_args.rend() ? nullptr : &*found;
+}
+
+std::optional<double> Mafile::in_force(std::string_view name) const {
+  if (const auto* given = b_arg(name)) return given->value;
+  const auto* rule = b_arg_rule(behavior, name);
+  return rule == nullptr ? std::nullopt : rule->fallback;
 }
 
 Mafile read_mafile(std::string_view bytes, const MafileOptions& options) { return Reader{options}.read(bytes); }

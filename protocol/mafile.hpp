@@ -23,9 +23,9 @@ enum class Severity { warning, error };
 ///   bad-number          a value is missing or is not a number
 ///   text-after-value    text without # behind a value or a waypoint; `| name` occurs
 ///   duplicate-b-arg     given before; which one wins on the glider is unknown, the last one wins here
-///   unknown-b-arg       a goto_list has no such b_arg; kept as it is
+///   unknown-b-arg       no such b_arg of goto_list, surface, yo or sample is known; kept as it is
 ///   unit                not the unit of masterdata (decoration: it flies)
-///   range               outside what masterdata allows
+///   range               outside what masterdata allows, or at odds with another b_arg (pitch, depths)
 ///   not-whole           an enum or a count that is not a whole number
 ///   missing-b-arg       left out: the glider takes masterdata's default, not the mission's value
 ///   count-mismatch      num_waypoints differs from the list; the listed ones count
@@ -38,6 +38,7 @@ enum class Severity { warning, error };
 ///   decimal-degrees     reading both numbers as decimal degrees lies closer to the glider
 ///   swapped             reading latitude first lies closer to the glider
 ///   far-away            more than 500 km from the glider
+///   inside-radius       the first waypoint is nearer to the glider than the radius: it counts as reached at once
 ///   encoding            a byte that is not printable ASCII
 ///   line-ends           CR LF, or no newline at the end
 ///   size                the file or a line is longer than the reader takes
@@ -75,6 +76,9 @@ struct Mafile {
   [[nodiscard]] bool valid() const;
   /// The last b_arg of that name.
   [[nodiscard]] const BArg* b_arg(std::string_view name) const;
+  /// What the glider takes (slocum.md 2.2): the last value given or, when the file does not name the b_arg, masterdata's
+  /// default, not the mission's value. None when the value is no number or no default is known.
+  [[nodiscard]] std::optional<double> in_force(std::string_view name) const;
   friend bool operator==(const Mafile&, const Mafile&) = default;
 };
 

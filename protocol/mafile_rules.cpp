@@ -10,6 +10,7 @@
 
 #include "core/base/text.hpp"
 #include "protocol/latlon.hpp"
+#include "protocol/mafile_b_args.hpp"
 
 namespace glidehelm::protocol {
 
@@ -17,65 +18,10 @@ namespace {
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
-/// One b_arg of masterdata. `allowed` has bit n for each allowed value n of an enum; 0: the range decides.
-struct Rule {
-  std::string_view behavior, name, unit;
-  double least, most;
-  std::uint32_t allowed;
-  bool whole;
-  bool expected;  ///< left out, its default surprises
-};
-
-constexpr std::uint32_t bits(std::initializer_list<int> values) {
-  std::uint32_t all = 0;
-  for (const int v : values) all |= std::uint32_t{1} << v;
-  return all;
-}
-
-constexpr std::array<Rule, 20> kRules{{
-    {"goto_list", "num_legs_to_run", "nodim", -2, kNoLimit, 0, true, true},
-    {"goto_list", "start_when", "enum", 0, 4, bits({0, 1, 2, 4}), true, true},
-    {"goto_list", "list_stop_when", "enum", 1, 15, bits({1, 2, 5, 7, 15}), true, true},
-    {"goto_list", "list_when_wpt_dist", "m", 10, kNoLimit, 0, false, true},
-    {"goto_list", "initial_wpt", "enum", -2, 7, 0, true, true},
-    {"goto_list", "num_waypoints", "nodim", 1, 99, 0, true, true},
-    {"goto_list", "end_action", "enum", 0, 6, bits({0, 6}), true, false},
-    {"goto_list", "primary_wpt", "enum", -kNoLimit, kNoLimit, 0, true, false},
-    {"goto_list", "primary_stop_when", "enum", -kNoLimit, kNoLimit, 0, true, false},
-    {"goto_list", "primary_when_wpt_dist", "m", -kNoLimit, kNoLimit, 0, false, false},
-    {"goto_list", "args_from_file", "enum", -1, 99, 0, true, false},
-    {"surface", "start_when", "enum", 0, 16, bits({0, 1, 2, 3, 6, 7, 8, 9, 10, 11, 12, 13, 16}), true, false},
-    {"surface", "when_secs", "sec", 120, kNoLimit, 0, false, false},
-    {"surface", "when_wpt_dist", "m", 5, kNoLimit, 0, false, false},
-    {"surface", "end_action", "enum", 0, 5, bits({0, 1, 2, 3, 4, 5}), true, false},
-    {"surface", "gps_wait_time", "sec", 120, kNoLimit, 0, false, false},
-    {"surface", "keystroke_wait_time", "sec", 0, 900, 0, false, false},
-    {"yo", "d_target_depth", "m", 3, 1000, 0, false, false},
-    {"yo", "num_half_cycles_to_do", "nodim", -kNoLimit, kNoLimit, 0, true, false},
-    {"sample", "state_to_sample", "enum", 0, 15, 0, true, false},
-}};
-
-const Rule* rule_of(std::string_view behavior, std::string_view name) {
-  const auto found = std::find_if(kRules.begin(), kRules.end(),
-                                  [&](const Rule& r) { return r.behavior == behavior && r.name == name; });
-  return found == kRules.end() ? nullptr : &*found;
-}
-
 std::string number_text(double value) {
   char text[48];
   const int n = std::snprintf(text, sizeof text, "%.10g", value);
   return {text, static_cast<std::size_t>(n)};
-}
-
-std::string allowed_text(const Rule& rule) {
-  if (rule.allowed != 0) {
-    std::string text;
-    for (int v = 0; v < 32; ++v)
-      if ((rule.allowed >> v & 1U) != 0) text += (text.empty() ? "" : ", ") + std::to_string(v);
-    return text;
-  }
-  if (rule.most == kNoLimit) return number_text(rule.least) + " or more";
-  return number_text(rule.least) + " to " + number_text(rule.most);
 }
 
 /// Messages quote the file: without bytes that could forge a log line, and not without end.
@@ -90,7 +36,7 @@ std::string printable(std::string_view message) {
 /// Mission parameters u_mission_param_a… are named by values from 1,000,000 on (slocum.md 2.2).
 bool is_mission_parameter(double value) { return value >= 1e6; }
 
-void check_value(const Rule& rule, const BArg& arg, ProblemList& problems) {
+void check_value(const BArgRule& rule, const BArg& arg, ProblemList& problems) {
   const double v = *arg.value;
   if (is_mission_parameter(v)) return;
   if (rule.whole && v != std::floor(v)) {
@@ -106,6 +52,17 @@ void check_value(const Rule& rule, const BArg& arg, ProblemList& problems) {
                    (legs ? "-2 (once), -1 (for ever) or a number of legs" : allowed_text(rule)));
 }
 
+void unknown_b_arg(const std::string& behavior, const BArg& arg, ProblemList& problems) {
+  const bool of_mission = behavior == "goto_list" && arg.name.starts_with("wpt_");
+  const auto other = other_behavior_with(behavior, arg.name);
+  std::string message = "no b_arg " + arg.name + " of " + behavior + " is known";
+  if (of_mission)
+    message += "; it counts inside a mission only";
+  else if (!other.empty())
+    message += "; " + std::string{other} + " has one";
+  problems.add(arg.line, arg.column, "unknown-b-arg", Weight::doubt, message);
+}
+
 void check_b_args(const Mafile& file, ProblemList& problems) {
   for (std::size_t i = 0; i < file.b_args.size(); ++i) {
     const auto& arg = file.b_args[i];
@@ -114,10 +71,9 @@ void check_b_args(const Mafile& file, ProblemList& problems) {
     if (before != file.b_args.begin() + static_cast<std::ptrdiff_t>(i))
       problems.add(arg.line, arg.column, "duplicate-b-arg", Weight::doubt,
                    arg.name + " was given on line " + std::to_string(before->line) + "; the last one counts here");
-    const auto* rule = rule_of(file.behavior, arg.name);
+    const auto* rule = b_arg_rule(file.behavior, arg.name);
     if (rule == nullptr) {
-      if (file.behavior == "goto_list")
-        problems.add(arg.line, arg.column, "unknown-b-arg", Weight::doubt, "goto_list has no b_arg " + arg.name);
+      if (knows_all_b_args(file.behavior)) unknown_b_arg(file.behavior, arg, problems);
       continue;
     }
     if (arg.unit != rule->unit)
@@ -125,11 +81,6 @@ void check_b_args(const Mafile& file, ProblemList& problems) {
                    arg.name + " is in (" + arg.unit + "), masterdata says (" + std::string{rule->unit} + ")");
     if (arg.value) check_value(*rule, arg, problems);
   }
-}
-
-std::optional<double> value_of(const Mafile& file, std::string_view name) {
-  const auto* arg = file.b_arg(name);
-  return arg == nullptr ? std::nullopt : arg->value;
 }
 
 /// Counts, defaults and the end of a list.
@@ -146,20 +97,45 @@ void check_list(const Mafile& file, const MafileOptions& options, ProblemList& p
     problems.add(
         count->line, count->column, "count-mismatch", Weight::doubt,
         "num_waypoints is " + count->text + ", listed are " + std::to_string(listed) + "; the listed ones count");
-  for (const auto& rule : kRules)
-    if (rule.behavior == "goto_list" && rule.expected && file.b_arg(rule.name) == nullptr)
-      problems.add(
-          0, 0, "missing-b-arg", Weight::doubt,
-          std::string{rule.name} + " is not given: the glider takes masterdata's default, not the mission's value");
+  for (const auto* rule : b_arg_rules("goto_list"))
+    if (rule->expected && file.b_arg(rule->name) == nullptr)
+      problems.add(0, 0, "missing-b-arg", Weight::doubt,
+                   std::string{rule->name} + " is not given: the glider takes masterdata's default, " +
+                       number_text(*rule->fallback) + ", not the mission's value");
   const auto* initial = file.b_arg("initial_wpt");
   if (initial != nullptr && initial->value && listed > 0 && *initial->value >= listed && *initial->value <= 7)
     problems.add(initial->line, initial->column, "range", Weight::doubt,
                  "initial_wpt is " + initial->text + ", but " + std::to_string(listed) + " waypoints are listed");
   if (file.b_arg("end_action") == nullptr) problems.add(0, 0, "missing-b-arg", Weight::note, "end_action is not given");
   const auto* legs = file.b_arg("num_legs_to_run");
-  if (legs != nullptr && legs->value && (*legs->value == -2 || *legs->value > 0) && value_of(file, "end_action") != 6.0)
+  if (legs != nullptr && legs->value && (*legs->value == -2 || *legs->value > 0) && file.in_force("end_action") != 6.0)
     problems.add(legs->line, legs->column, "quits-at-end", Weight::doubt,
                  "num_legs_to_run " + legs->text + " without end_action 6: goto_list ends behind the last waypoint");
+}
+
+/// A pitch in radians that points the wrong way, or that is a number of degrees.
+void check_pitch(const Mafile& file, const char* use_name, const char* value_name, bool dives, ProblemList& problems) {
+  const auto* arg = file.b_arg(value_name);
+  const auto use = file.in_force(use_name);
+  // 2 and 3 steer to an angle; 1 and 4 mean inches and cubic centimetres.
+  if (arg == nullptr || !arg->value || is_mission_parameter(*arg->value) || !(use == 2.0 || use == 3.0)) return;
+  const double pitch = dives ? -*arg->value : *arg->value;
+  if (pitch > 0 && pitch < kPi / 2) return;
+  problems.add(arg->line, arg->column, "range", Weight::doubt,
+               arg->name + " is " + arg->text + ", expected are radians, " +
+                   (dives ? "-1.57 to 0: the nose points down in a dive" : "0 to 1.57: the nose points up in a climb"));
+}
+
+/// What several b_args say together.
+void check_flight(const Mafile& file, ProblemList& problems) {
+  check_pitch(file, "d_use_pitch", "d_pitch_value", true, problems);
+  check_pitch(file, "c_use_pitch", "c_pitch_value", false, problems);
+  const auto* shallow = file.b_arg("c_target_depth");
+  const auto deep = file.in_force("d_target_depth");
+  if (file.behavior != "yo" || shallow == nullptr || !shallow->value || !deep) return;
+  if (is_mission_parameter(*shallow->value) || is_mission_parameter(*deep) || *shallow->value < *deep) return;
+  problems.add(shallow->line, shallow->column, "range", Weight::doubt,
+               "c_target_depth is " + shallow->text + ", not above d_target_depth, which is " + number_text(*deep));
 }
 
 /// A number of the file read as decimal degrees.
@@ -169,6 +145,19 @@ std::optional<GeoPoint> in_degrees_as_written(std::string_view lat, std::string_
   const auto point = GeoPoint::from_degrees(*a, *b);
   if (!point) return std::nullopt;
   return *point;
+}
+
+/// The first waypoint is hit where the glider is: it never flies there.
+void check_radius(const Mafile& file, const GeoPoint& glider, ProblemList& problems) {
+  const auto radius = file.in_force("list_when_wpt_dist");
+  if (file.waypoints.empty() || !file.waypoints.front().at || !radius || is_mission_parameter(*radius)) return;
+  const auto& first = file.waypoints.front();
+  const double metres = distance(glider, *first.at).si();
+  if (metres >= *radius) return;
+  problems.add(first.line, first.column, "inside-radius", Weight::doubt,
+               "the first waypoint is " + number_text(std::round(metres)) +
+                   " m from the glider, within the radius of " + number_text(*radius) +
+                   " m: it counts as reached at once");
 }
 
 std::string km(Metres d) {
@@ -234,9 +223,12 @@ bool is_mafile_behavior(std::string_view behavior) {
 
 void check_mafile(const Mafile& file, const MafileOptions& options, ProblemList& problems) {
   check_b_args(file, problems);
+  check_flight(file, problems);
   if (file.behavior != "goto_list") return;
   check_list(file, options, problems);
-  if (options.near) check_places(file, *options.near, problems);
+  if (!options.near) return;
+  check_places(file, *options.near, problems);
+  check_radius(file, *options.near, problems);
 }
 
 }  // namespace glidehelm::protocol

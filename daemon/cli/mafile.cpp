@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "protocol/mafile.hpp"
+#include "protocol/mafile_b_args.hpp"
 
 namespace glidehelm::cli {
 
@@ -44,6 +45,10 @@ void print_text(const std::string& name, const Mafile& file, std::ostream& out, 
       << " b_args, " << file.waypoints.size() << " waypoints, " << (file.valid() ? "valid" : "not valid") << '\n';
   for (const auto& arg : file.b_args)
     out << "  " << arg.name << " = " << arg.text << (arg.unit.empty() ? "" : " " + arg.unit) << '\n';
+  for (const auto* rule : protocol::b_arg_rules(file.behavior))
+    if (rule->fallback && file.b_arg(rule->name) == nullptr)
+      out << "  " << rule->name << " = " << *rule->fallback << " " << rule->unit
+          << " (not given: masterdata's default)\n";
   int number = 0;
   for (const auto& waypoint : file.waypoints) {
     char text[96] = "no position";

@@ -19,8 +19,9 @@ struct MafileOptions {
 
 /// Reads a mafile and lists its problems (the codes are those of protocol/mafile.hpp).
 ///
-/// Text: what the file says on `out`, its problems on `err` as "FILE: line 3, column 7: error: … [code]". JSON on
-/// `out`: product.md 9, one document; a value that is no number and a waypoint that is no position are null.
+/// Text: what the file says on `out`, with the defaults that the glider takes for what it leaves out; its problems on
+/// `err` as "FILE: line 3, column 7: error: … [code]". JSON on `out`: product.md 9, one document; a value that is no
+/// number and a waypoint that is no position are null.
 /// Returns 0 when no problem is an error, 1 when one is or the file cannot be read, 2 without a file.
 int run_mafile(const MafileOptions& options, world::Files& files, std::ostream& out, std::ostream& err);
 

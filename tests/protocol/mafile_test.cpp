@@ -220,6 +220,77 @@ TEST_CASE("other behaviours are read generally, their known ranges are checked")
   CHECK(file.b_arg("strobe_on")->unit == "bool");
 }
 
+namespace {
+
+std::string behavior_file(const std::string& behavior, const std::string& args) {
+  return "behavior_name=" + behavior + "\n<start:b_arg>\n" + args + "<end:b_arg>\n";
+}
+std::string yo(const std::string& args) { return behavior_file("yo", args); }
+
+}  // namespace
+
+TEST_CASE("surface, yo and sample have their ranges and names, in both modes") {
+  for (const auto& [text, problem] : std::vector<std::pair<std::string, std::string>>{
+           {behavior_file("surface", "b_arg: start_when(enum) 5\n"), "range:3:25"},
+           {behavior_file("surface", "b_arg: when_wpt_dist(m) 4\n"), "range:3:25"},
+           {behavior_file("surface", "b_arg: end_action(enum) 6\n"), "range:3:25"},
+           {behavior_file("surface", "b_arg: gps_wait_time(sec) 119\n"), "range:3:27"},
+           {behavior_file("surface", "b_arg: gps_postfix_wait_time(sec) -1\n"), "range:3:35"},
+           {behavior_file("surface", "b_arg: c_bpump_value(X) 1001\n"), "range:3:25"},
+           {behavior_file("surface", "b_arg: keystroke_wait(sec) 900\n"), "unknown-b-arg:3:28"},
+           {yo("b_arg: start_when(enum) 19\n"), "range:3:25"},
+           {yo("b_arg: d_target_depth(m) 2\n"), "range:3:26"},
+           {yo("b_arg: d_target_depth(m) 1001\n"), "range:3:26"},
+           {yo("b_arg: num_half_cycles_to_do(nodim) 1.5\n"), "not-whole:3:37"},
+           {yo("b_arg: d_bpump_value(X) -1001\n"), "range:3:25"},
+           {behavior_file("sample", "b_arg: state_to_sample(enum) 16\n"), "range:3:30"},
+           {behavior_file("sample", "b_arg: depth(m) 1\n"), "unknown-b-arg:3:17"},
+       }) {
+    INFO(text);
+    CHECK(said(lenient(text)) == Said{problem + "?"});
+    CHECK(said(strict(text)) == Said{problem});
+  }
+  CHECK(said(lenient(yo("b_arg: when_secs(s) 10\n"))).empty());  // a unit is decoration
+  CHECK(said(strict(yo("b_arg: when_secs(s) 10\n"))) == Said{"unit:3:21"});
+  CHECK(lenient(yo("b_arg: target_depth(m) 100\n")).problems.front().message ==
+        "no b_arg target_depth of yo is known; drift_at_depth has one");
+  CHECK(lenient(list({{"wpt_x_0(X)", "-1530"}})).problems.front().message ==
+        "no b_arg wpt_x_0 of goto_list is known; it counts inside a mission only");
+}
+
+TEST_CASE("pitches are radians with the sign of their phase") {
+  CHECK(said(lenient(yo("b_arg: d_pitch_value(X) -0.4538\nb_arg: c_pitch_value(X) 0.4538\n"))).empty());
+  CHECK(said(lenient(yo("b_arg: d_pitch_value(X) 0.4538\n"))) == Said{"range:3:25?"});
+  CHECK(said(lenient(yo("b_arg: c_pitch_value(X) 26\n"))) == Said{"range:3:25?"});
+  CHECK(said(lenient(yo("b_arg: c_use_pitch(enum) 1\nb_arg: c_pitch_value(X) 26\n"))).empty());  // inches
+  CHECK(said(lenient(behavior_file("surface", "b_arg: c_use_pitch(enum) 3\nb_arg: c_pitch_value(X) -0.4\n"))) ==
+        Said{"range:4:25?"});
+}
+
+TEST_CASE("a yo climbs to above where it dives to, by default 12 m") {
+  CHECK(said(lenient(yo("b_arg: c_target_depth(m) 20\nb_arg: d_target_depth(m) 200\n"))).empty());
+  CHECK(said(lenient(yo("b_arg: c_target_depth(m) 20\n"))) == Said{"range:3:26?"});
+  CHECK(said(lenient(yo("b_arg: c_target_depth(m) 1000000\n"))).empty());  // a mission parameter
+}
+
+TEST_CASE("the value in force is the last given, else masterdata's default") {
+  const auto file = lenient(list({{"list_when_wpt_dist(m)", ""}, {"initial_wpt(X)", "1"}, {"end_action(enum)", "x"}}));
+  CHECK(file.in_force("list_when_wpt_dist") == 10.0);
+  CHECK(file.in_force("initial_wpt") == 1.0);
+  CHECK_FALSE(file.in_force("end_action"));
+  CHECK_FALSE(file.in_force("colour"));
+  CHECK(file.problems.front().message ==
+        "list_when_wpt_dist is not given: the glider takes masterdata's default, 10, not the mission's value");
+  CHECK(lenient(behavior_file("surface", "")).in_force("when_secs") == 1200.0);
+}
+
+TEST_CASE("a first waypoint within the radius counts as reached at once") {
+  // 2910.5000 N 1530.0000 W; a minute of latitude is 1.85 km, the radius 700 m.
+  CHECK(said(near(list(), 29 + 10.8 / 60, -15.5)) == Said{"inside-radius:13:1?"});
+  CHECK(said(near(list(), 29 + 10.9 / 60, -15.5)).empty());
+  CHECK(said(near(list({{"list_when_wpt_dist(m)", "1000000"}}), 29 + 10.5 / 60, -15.5)).empty());
+}
+
 TEST_CASE("a problem prints its place, its severity and its code") {
   CHECK(lenient(list({{"num_waypoints(nodim)", "4"}})).problems.front().text() ==
         "line 9, column 29: warning: num_waypoints is 4, listed are 3; the listed ones count [count-mismatch]");
@@ -269,7 +340,14 @@ TEST_CASE("real data: all 37 mafiles are read and their problems are the known o
       {"idx_32387892485_goto_l77.ma", {"goto_list", 6, 2, {"quits-at-end:5?"}}},
       {"idx_5976854338_goto_l10.ma", {"goto_list", 6, 12, {"too-many-waypoints:46?"}}},
       {"idx_70364213980_goto_l10.ma", {"goto_list", 6, 2, {"count-mismatch:11?"}}},
-      {"sfmcapi_drift_at_depth_yo30.ma", {"yo", 27, 0, {"bad-number:21"}}},
+      // A yo by its name, but with the b_args of drift_at_depth, and `??` for a value.
+      {"sfmcapi_drift_at_depth_yo30.ma",
+       {"yo",
+        27,
+        0,
+        {"unknown-b-arg:12?", "unknown-b-arg:14?", "unknown-b-arg:16?", "unknown-b-arg:17?", "unknown-b-arg:18?",
+         "unknown-b-arg:19?", "unknown-b-arg:20?", "bad-number:21", "unknown-b-arg:21?", "unknown-b-arg:25?",
+         "unknown-b-arg:26?", "unknown-b-arg:27?"}}},
       {"sfmcapi_goto_l90.ma", {"goto_list", 5, 4, {radius}}},
       {"sfmcapi_surfac30.ma", {"surface", 8, 0, {}}},
       {"sfmcapi_yo30.ma", {"yo", 15, 0, {}}},

@@ -138,7 +138,7 @@ void Session::apply(Change change) {
   }
   if (change.emitter) {
     emitter_ = std::move(change.emitter);
-    glanced_ = "another folder";
+    glanced_ = "?";
   }
   entry_ = std::move(change.entry);
 }

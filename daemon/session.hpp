@@ -106,7 +106,7 @@ class Session {
   std::uint64_t bytes_{};
   world::TimerId idle_timer_{}, folder_timer_{};
   bool watching_folder_{};
-  std::string glanced_;  ///< at the to-glider folder, when it was looked into last
+  std::string glanced_{"?"};  ///< at the to-glider folder, when it was looked into last; "?": not yet
   std::vector<decltype(mission::Event::what)> waiting_;
 
   std::shared_ptr<const ChartSource> chart_;

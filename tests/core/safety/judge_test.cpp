@@ -114,3 +114,34 @@ TEST_CASE("a waiting list and lists on both sides of the antimeridian are accept
     CHECK(far.failing() == "");
   }
 }
+
+TEST_CASE("a list is judged in the corrected forecast, and a correction that makes no sense is refused") {
+  // The good file's ocean, 0.05 m/s east and 0.02 north, as a forecast without its eastward part and a correction with
+  // scales so long that it is the same everywhere.
+  auto c = good_case();
+  c.field = test::uniform(0.0, 0.02);
+  CHECK(c.failing().find("promise surfacing") != std::string::npos);
+  ocean::LocalCorrection missing;
+  missing.at = c.dossier.at.fix;
+  missing.at_s = c.dossier.fix_s;
+  missing.added = {MetresPerSecond{0.05}, MetresPerSecond{0}};
+  missing.length = Metres{1e7};
+  missing.time = Seconds{1e8};
+  c.dossier.correction = missing;
+  CHECK(c.failing() == "");
+  c.dossier.correction->added.east = MetresPerSecond{1.5};
+  CHECK(c.failing().find("0 dossier") != std::string::npos);
+  c.dossier.correction = missing;
+  c.dossier.correction->time = Seconds{0};
+  CHECK(c.failing().find("0 dossier") != std::string::npos);
+}
+
+TEST_CASE("the tail is flown with the shares that the rules name") {
+  auto c = good_case();
+  c.dossier.rules.tail_stint = 0.12;
+  c.dossier.rules.tail_slower = 0.2;
+  CHECK(margin(c.judged(), "2 tail").message ==
+        "with the stint 12 % shorter or longer and the speed 20 % lower or 5 % higher");
+  c.dossier.rules.tail_slower = 0.7;
+  CHECK(c.failing().find("0 dossier") != std::string::npos);
+}

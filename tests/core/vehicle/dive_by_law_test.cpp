@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/safety/reflight.hpp"
 #include "tests/support/planning.hpp"
 
 using namespace glidehelm;
@@ -105,4 +106,38 @@ TEST_CASE("a current stronger than the glider against its heading is held toward
   CHECK(target == 0);
   CHECK(flown.first_heading.degrees() == Approx(0).margin(0.01));
   CHECK(distance(flown.motion.end.at(), off(s.flight.fix, 0, -0.2 * kStint)).si() < 1);
+}
+
+TEST_CASE(
+    "a heading bias turns the true way, an aim point that knows it turns it back, and the verifier flies the same") {
+  for (const double bias : {-8.0, 8.0}) {
+    Setting s{0.05, 0.02};
+    s.flight.glider.current_correction = 1;
+    s.flight.glider.heading_bias = degrees(bias);
+    const Current known = current(0.05, 0.02);
+    const Heading wanted{degrees(70)};
+    const auto aim = vehicle::aim_point(s.flight.fix, wanted, s.flight.glider, known, kStint, Metres{400});
+    const std::vector<GeoPoint> points{aim.at};
+    std::size_t target = 0;
+    const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{400}, true, known);
+    // Û·h + ĉ along the leg, U·h' + c truly: the true heading is the wanted one all the way.
+    const auto there = off(s.flight.fix, (0.3 * wanted.east() + 0.05) * kStint, (0.3 * wanted.north() + 0.02) * kStint);
+    CHECK(distance(flown.motion.end.at(), there).si() < 3);
+    CHECK(std::abs(in_degrees(flown.first_heading - wanted)) < 0.02);
+    safety::FlightOrder order;
+    order.points = points;
+    order.radius = Metres{400};
+    order.glider = s.flight.glider;
+    order.schedule.stint = order.schedule.first_stint = Seconds{kStint};
+    order.schedule.time_to_dive = Seconds{0};
+    order.believed_current = known;
+    order.fix = s.flight.fix;
+    order.fix_s = test::kT0;
+    order.horizon_s = test::kT0 + kStint + 60;
+    order.goal = s.flight.goal.centre;
+    order.goal_radius = s.flight.goal.radius;
+    const auto again = safety::fly(order, s.field);
+    REQUIRE(again.stints.size() == 1);
+    CHECK(distance(again.stints[0].surfaced, flown.motion.end.at()).si() < 3);
+  }
 }

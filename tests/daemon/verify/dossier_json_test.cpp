@@ -42,6 +42,10 @@ safety::Dossier awkward_dossier() {
   d.glider.current_correction = 0;
   d.believed_current = Current{MetresPerSecond{std::nextafter(0.1, 1.0)}, MetresPerSecond{-1e-300}};
   d.schedule = {Seconds{14'400.001}, Seconds{7200}, Seconds{899.5}, Seconds{235}};
+  d.glider.heading_bias = Radians{-0.07};
+  d.correction = ocean::LocalCorrection{
+      geo_point(-12.5, 179.9), 1'732'520'000.0 / 3.0, {MetresPerSecond{0.1 / 3.0}, MetresPerSecond{-0.0}},
+      MetresPerSecond{0.02},   Metres{30'000},        Seconds{86'400}};
   d.fix_s = 1'732'530'015.318;
   d.horizon_s = std::numeric_limits<double>::infinity();
   d.rules.max_wpt_distance = Metres{20'000};

@@ -1,7 +1,10 @@
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 #include "protocol/replay.hpp"
 
@@ -11,10 +14,18 @@ void require(bool holds) {
   if (!holds) std::abort();
 }
 
+bool has(const std::vector<glidehelm::protocol::ReplayedFix>& fixes, const glidehelm::protocol::ReplayedFix& fix) {
+  return std::any_of(fixes.begin(), fixes.end(), [&](const auto& f) {
+    return f.lat_ddmm == fix.lat_ddmm && f.lon_ddmm == fix.lon_ddmm && f.fix_time && fix.fix_time &&
+           std::abs(glidehelm::between(*f.fix_time, *fix.fix_time).count()) < 2.0;
+  });
+}
+
 }  // namespace
 
 /// Any bytes as a dialog: the same answer in pieces of a size that the input chooses, accepted fixes keep the promises
-/// of accept_fix, and idle flushes between the pieces lose no fix.
+/// of accept_fix, idle flushes between the pieces lose no fix, and the dialog cut at a place that the input chooses has
+/// no fix that the whole does not have.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace glidehelm;
   using namespace glidehelm::protocol;
@@ -28,6 +39,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     require(*fix.fix_age_s <= 1200 && !fix.glider.empty());
   }
   for (const auto& fix : whole.refused) require(!fix.rule.empty() && !fix.reason.empty());
+
+  const std::size_t cut = size == 0 ? 0 : size * data[size / 3] / 255U;
+  for (const auto& fix : replay_log(bytes.substr(0, cut), Limits{}, chunk).surfacings)
+    require(has(whole.surfacings, fix) || has(whole.refused, fix));  // refused: at a prompt that came behind the cut
 
   DialogReader reader;
   std::uint64_t blocks = 0;

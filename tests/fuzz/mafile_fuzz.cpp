@@ -26,6 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   require(strict.b_args == lenient.b_args && strict.waypoints == lenient.waypoints);
   require(strict.problems.size() >= lenient.problems.size());
   require(lenient.valid() || !strict.valid());
+  for (const auto& arg : strict.b_args) require(strict.in_force(arg.name) == strict.b_arg(arg.name)->value);
   int line = 0;
   for (const auto& problem : strict.problems) {
     require(problem.line >= line && problem.severity == Severity::error && !problem.code.empty());

@@ -89,6 +89,14 @@ TEST_CASE("for people the problems go to standard error with file, line and colu
   CHECK(r.err.find("goto_l10.ma: line 11, column 1: error: -118.5 33.4 looks like decimal degrees") == 0);
 }
 
+TEST_CASE("for people the defaults that the glider takes stand beside what the file gives") {
+  const auto r = run("behavior_name=surface\n<start:b_arg>\nb_arg: when_secs(sec) 7200\n<end:b_arg>\n", false);
+  CHECK(r.code == 0);
+  CHECK(r.out.find("  when_secs = 7200 sec\n") != std::string::npos);
+  CHECK(r.out.find("  keystroke_wait_time = 300 sec (not given: masterdata's default)\n") != std::string::npos);
+  CHECK(r.out.find("when_secs = 1200") == std::string::npos);
+}
+
 TEST_CASE("a file that cannot be read, that is too large or that is not named is said") {
   test::ReadableFiles none;
   std::ostringstream out, err;

@@ -224,6 +224,7 @@ std::map<std::string, Said> read_journal(const std::vector<daemon::JournalRecord
 /// The accounts of a voyage.
 struct Count {
   int surfacings{}, accepted{}, refused{}, unreadable{}, unaccounted{};
+  int refusals{};                           ///< of single fixes, also where another one was accepted
   int altered{}, altered_by_clean_calls{};  ///< accepted with another position than the glider's
   int kept{}, silent{};                     ///< accepted without a file: with a reason, and without
   std::map<std::string, int> reasons;
@@ -258,7 +259,7 @@ Count count(const Voyage& voyage, const std::map<std::string, Said>& said) {
           const auto why = of.kept.find(accepted->surfacing);
           if (why != of.kept.end()) {
             ++c.kept;
-            ++c.reasons[why->second.substr(0, 90)];
+            ++c.reasons[why->second.substr(0, why->second.find_first_of("0123456789"))];
           } else {
             ++c.silent;
             UNSCOPED_INFO("no file and no reason: " << accepted->surfacing << " " << row.dump());
@@ -285,6 +286,7 @@ Count count(const Voyage& voyage, const std::map<std::string, Said>& said) {
       }
     }
     c.replacements += of.replacements;
+    c.refusals += static_cast<int>(of.refused.size());
     for (const auto& [surfacing, times] : of.first_emissions) {
       ++c.emitted;
       if (times > 1) ++c.twice;
@@ -326,7 +328,8 @@ TEST_CASE("a fleet on bad lines: every surfacing is accounted for, and no file g
             << " s of wall time: " << days * 86400 / wall_s << " x real time, " << gliders * days * 86400 / wall_s
             << " glider-seconds a second\n"
             << "surfacings " << c.surfacings << ": accepted " << c.accepted << ", refused with a reason " << c.refused
-            << ", nothing readable came " << c.unreadable << ", unaccounted " << c.unaccounted << "\n"
+            << ", nothing readable came " << c.unreadable << ", unaccounted " << c.unaccounted
+            << "; single fixes refused " << c.refusals << "\n"
             << "accepted with another fix than the glider's " << c.altered << " (of calls neither garbled nor slow "
             << c.altered_by_clean_calls << ")\n"
             << "accepted without a file, with a reason " << c.kept << ", without one " << c.silent << "\n";

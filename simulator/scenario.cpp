@@ -49,6 +49,7 @@ void check_glider(const GliderDraft& g, const std::string& path, Reading& readin
     reading.complain(path + ".frame", "both magnetic_variation_deg and rotation_deg", {}, "one of the two");
   if (g.climb_to >= g.dive_depth)
     reading.complain(path + ".vehicle.climb_to_m", "not above the dive depth", {}, "less than dive_depth_m");
+  check_flight(g, path, reading);
   // The transfer of a short list has to fit between the script and the end of the window.
   if (g.call.call_after + g.call.dockzr_after + 60 > g.times.surface - g.times.post_fix)
     reading.complain(path + ".call.dockzr_after_s", "the script would run after the glider has dived", {},
@@ -138,7 +139,12 @@ GliderSetup setup_of(const GliderDraft& d, double start_s, std::uint64_t seed) {
   s.slot = d.slot;
   s.start = point(d.start);
   s.start_s = start_s;
-  s.hull = {d.speed, d.glide_angle, d.dive_depth, d.climb_to, d.heading_bias, current(d.leeway).value_or(Current{})};
+  s.hull.speed = d.speed;
+  s.hull.glide_angle = d.glide_angle;
+  s.hull.dive_depth = d.dive_depth;
+  s.hull.climb_to = d.climb_to;
+  s.hull.heading_bias = d.heading_bias;
+  s.hull.leeway = current(d.leeway).value_or(Current{});
   s.belief = {d.believed_speed.value_or(d.speed), d.correction};
   s.prior_water = current(d.prior);
   s.frame = d.rotation_deg ? LocalFrame{degrees(*d.rotation_deg)}
@@ -149,6 +155,7 @@ GliderSetup setup_of(const GliderDraft& d, double start_s, std::uint64_t seed) {
   s.times = d.times;
   s.clock_skew_s = d.clock_skew_s;
   s.seed = seed;
+  put_flight(d, s);
   if (d.initial_list.empty()) {
     s.list.waypoints = {point(d.goal)};
     s.list.radius = d.initial_radius;
@@ -289,6 +296,7 @@ Expected<Scenario, std::vector<config::ConfigError>> read_scenario(std::string_v
               std::floor(3600 * draft.fleet.spread_h * static_cast<double>(i) / static_cast<double>(fleet.size())),
           seeds.next()));
   }
+  for (auto& g : s.gliders) g.plan.setup.hull.seabed = seabed_of(draft.seabed, g.plan.setup.start);
   s.forecasts = forecasts_of(draft.forecasts, s.seed, file);
   s.truth =
       truth_of(draft, s, reading.places.count("truth.coastal") > 0, reading.places.count("truth.error") > 0, file);

@@ -18,6 +18,29 @@ struct GoalDraft : PlaceDraft {
 struct LineDraft {
   std::string connect, listen;
 };
+/// The glider's motion, behaviours and instruments beyond the older keys.
+struct FlightDraft {
+  bool force_balance{};
+  Body body;
+  double fouling_per_day{};
+  Metres target_altitude{5}, altimeter_range{100};
+  bool speed_by_depth_rate{};
+  Radians angle_error{};
+  SurfaceRules surfacing;
+  AbortRules aborts;
+  GpsSetup gps;
+  WindSetup wind;
+  Radians wind_from{};
+  EnergySpec energy;
+  FaultPlan altimeter_silent;
+};
+struct SeabedDraft {
+  SeabedSpec::Kind kind{SeabedSpec::Kind::none};
+  Metres depth{100}, hump_height{0}, hump_radius{5000};
+  double slope{};
+  Radians deepens{};
+  PlaceDraft origin;
+};
 struct GliderDraft {
   std::string name, initial_list, folder;
   PlaceDraft start;
@@ -39,6 +62,7 @@ struct GliderDraft {
   double clock_skew_s{0};
   FaultPlan lost_calls, not_taken, no_connection_block, redial;
   LineFaultPlan line_faults;
+  FlightDraft flight;
 };
 struct AnalyticDraft : ocean::AnalyticSpec {
   PlaceDraft origin_deg;
@@ -84,6 +108,7 @@ struct ScenarioDraft {
   EndPlan end;
   std::vector<GliderDraft> gliders;
   FleetDraft fleet;
+  SeabedDraft seabed;
 };
 
 // Keys of the line, in scenario_line_fields.cpp.
@@ -92,6 +117,20 @@ config::Fields<FaultPlan> fault_fields();
 config::Fields<GliderDraft> faults_fields();
 /// `dialog`: which generation prints.
 config::Fields<CallSetup> dialog_fields();
+
+// Keys of flight, behaviours and instruments, in scenario_glider_fields.cpp.
+/// `vehicle`: what the force balance, growth, altimeter and the estimated speed add to it.
+void add_vehicle_keys(config::Fields<GliderDraft>& f);
+/// `surfacing`, `aborts`, `gps`, `wind`, `energy`.
+void add_behaviour_keys(config::Fields<GliderDraft>& f);
+/// Faults of the glider's own instruments, in `faults`.
+void add_instrument_faults(config::Fields<GliderDraft>& f);
+config::Fields<SeabedDraft> seabed_fields();
+/// Complains about what contradicts itself.
+void check_flight(const GliderDraft& g, const std::string& path, config::Reading& reading);
+/// Fills what those keys decide.
+void put_flight(const GliderDraft& d, GliderSetup& s);
+SeabedSpec seabed_of(const SeabedDraft& d, GeoPoint otherwise);
 
 // Keys of the ocean's error, of forecasts and of fleets, in scenario_fleet_fields.cpp.
 config::Fields<ErrorDraft> ocean_error_fields();

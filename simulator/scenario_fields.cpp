@@ -48,6 +48,7 @@ Fields<GliderDraft> vehicle_fields() {
           &G::correction, between(0, 1));
   f.number({"heading_bias_deg", "true heading less wanted heading, clockwise"}, &G::heading_bias, kDegree,
            between(-90, 90));
+  add_vehicle_keys(f);
   return f;
 }
 
@@ -102,11 +103,14 @@ void add_flight_keys(Fields<GliderDraft>& f) {
   f.section({"frame", "local frame: one of two keys"}, frame);
   f.part({"prior_water", "current measured before the start"}, &G::prior, current_fields(2.8));
   f.part({"leeway", "drift by wind while on the surface"}, &G::leeway, current_fields(1));
+  add_behaviour_keys(f);
   f.section({"mission", "what it flies"}, mission);
   f.part({"call", "calls and the dockserver's script"}, &G::call, call_fields());
   f.number({"clock_skew_s", "its clock less UTC"}, &G::clock_skew_s, 1, between(-1e8, 1e8));
   f.part({"dialog", "what it prints"}, &G::call, dialog_fields());
-  f.section({"faults", "what goes wrong"}, faults_fields());
+  auto faults = faults_fields();
+  add_instrument_faults(faults);
+  f.section({"faults", "what goes wrong"}, faults);
 }
 
 Fields<GliderDraft> glider_fields() {
@@ -243,6 +247,7 @@ const Fields<ScenarioDraft>& scenario_fields() {
     f.number({"daemon_wait_s", "how long a missing daemon is waited for"}, &S::daemon_wait_s, 1, between(0, 3600));
     f.part({"truth", "what the water does: one of four keys, and its error", true}, &S::truth, truth);
     f.part({"forecasts", "files that reach a folder while the gliders fly"}, &S::forecasts, forecast_fields());
+    f.part({"seabed", "the floor under the gliders"}, &S::seabed, seabed_fields());
     f.part({"end", "when a run is over"}, &S::end, end);
     f.list({"gliders", "the gliders, needed unless there is a fleet"}, &S::gliders, glider_fields(), 1);
     Fields<GliderDraft> each;

@@ -27,6 +27,8 @@ const char* word(RunEnd end) {
       return "behaviour_error";
     case RunEnd::mission_over:
       return "mission_over";
+    case RunEnd::aborted:
+      return "aborted";
     case RunEnd::surfacings:
       return "surfacings";
     case RunEnd::days:
@@ -66,6 +68,7 @@ struct Simulation::Life {
     result.ended_s = now_s;
     result.arrived_s = glider.arrived_s();
     result.closest = glider.closest();
+    result.energy = glider.energy();
   }
 
   void surface() {
@@ -181,6 +184,13 @@ struct Simulation::Life {
     r.bytes = told.count;
     r.whole_fixes = told.whole_fixes;
     r.connections = told.connections;
+    r.because = glider.because();
+    r.fix_is_fresh = glider.fix_is_fresh();
+    if (!dives.empty()) r.energy = dives.back().energy;
+    if (!r.faults.lost) {
+      const double from = glider.fixes_done_s() + plan.call.call_after;
+      glider.called(from, std::max(0.0, now_s - plan.setup.times.post_fix - from));
+    }
     if (r.call.list) ++result.lists_taken;
     if (r.call.error) ++result.behaviour_errors;
     surfacings.push_back(std::move(r));
@@ -192,9 +202,14 @@ struct Simulation::Life {
     const auto error = call->outcome().error;
     close_call(now_s);
     const double surfaced = glider.surfaced_s();
-    if (error) return finish(RunEnd::behaviour_error, "bad goto list after Ctrl-F, " + error->message(), now_s);
+    if (error) {
+      if (plan.setup.aborts.fallback_calls == 0)
+        return finish(RunEnd::behaviour_error, "bad goto list after Ctrl-F, " + error->message(), now_s);
+      glider.abort_by_behaviour_error(*error, now_s);
+    }
     if (end.at_goal && glider.arrived_s() && *glider.arrived_s() <= surfaced + plan.setup.times.last_fix)
       return finish(RunEnd::arrived, "inside the goal radius", now_s);
+    if (glider.fallback_is_over()) return finish(RunEnd::aborted, glider.abort()->message(), now_s);
     if (glider.mission_over()) return finish(RunEnd::mission_over, "the goto list ended with end_action 0", now_s);
     if (end.surfacings && result.surfacings >= *end.surfacings)
       return finish(RunEnd::surfacings, "the scenario's number of surfacings", now_s);

@@ -8,17 +8,11 @@
 #include "core/chart/chart.hpp"
 #include "core/ocean/field.hpp"
 #include "simulator/dockserver/call.hpp"
+#include "simulator/fault_plan.hpp"
 #include "simulator/glider/behaviours.hpp"
 
 /// A simulated glider, its dockserver and its ocean. Not here: our motion, planners, pilot, protocol.
 namespace glidehelm::simulator {
-
-/// A fault that happens by chance, at named surfacings (counted from 1), or both.
-struct FaultPlan {
-  double probability{};
-  std::vector<int> surfacings;
-  friend bool operator==(const FaultPlan&, const FaultPlan&) = default;
-};
 
 /// What goes wrong with a glider's line beside the older four faults: one plan per flag of CallFaults.
 struct LineFaultPlan {
@@ -58,9 +52,12 @@ struct SurfacingRecord {
   std::uint64_t bytes{};  ///< that left on the line
   int whole_fixes{};      ///< `GPS Location:` lines that left undamaged, reprints included
   int connections{};
+  Because because;          ///< what brought the glider up
+  bool fix_is_fresh{true};  ///< false: no valid fix here, `fix` is an older one
+  Energy energy;            ///< of the surface interval before and the dive that ended here
 };
 
-enum class RunEnd { running, arrived, accident, behaviour_error, mission_over, surfacings, days };
+enum class RunEnd { running, arrived, accident, behaviour_error, mission_over, aborted, surfacings, days };
 const char* word(RunEnd end);
 
 /// How one glider fared.
@@ -71,6 +68,7 @@ struct GliderResult {
   double started_s{}, ended_s{};
   int surfacings{}, lists_taken{}, behaviour_errors{};
   Metres closest;  ///< to the goal
+  Energy energy;   ///< of the whole run
 };
 
 /// Bytes of one glider's line.

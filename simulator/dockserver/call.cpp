@@ -29,13 +29,13 @@ std::string slot_file(int slot) {
 Call::Call(const CallSetup& setup, CallFaults faults, Glider& glider, ToGlider& folder, std::string& on_board)
     : setup_{setup}, faults_{faults}, glider_{&glider}, folder_{&folder}, on_board_{&on_board} {
   const auto& times = glider.setup().times;
-  dive_s_ = glider.fix_s() + times.surface;
+  dive_s_ = glider.fixes_done_s() + times.surface;
   resume_s_ = dive_s_ - times.post_fix;
   if (faults.lost) {
     outcome_.note = "no call";
     return;
   }
-  call_s_ = glider.fix_s() + setup.call_after;
+  call_s_ = glider.fixes_done_s() + setup.call_after;
   const double at_surface_s = call_s_ + setup.at_surface_after;
   if (!faults.no_connection_block) plan(call_s_, What::connect);
   plan(at_surface_s, What::at_surface);
@@ -65,6 +65,14 @@ Report Call::report(double now_s) const {
   r.aborts.total = setup_.aborts;
   r.aborts.at_s = r.mission_started_s - kAbortBefore;
   r.aborts.mission_number = std::max(0, r.mission_number - 1);
+  if (const auto& abort = glider_->abort()) {
+    ++r.aborts.total;
+    r.aborts.cause = abort->cause;
+    r.aborts.details = abort->details;
+    r.aborts.at_s = abort->at_s + glider_->setup().clock_skew_s;
+    r.aborts.mission_number = r.mission_number;
+    r.aborts.segment = r.segment;
+  }
   return r;
 }
 

@@ -22,10 +22,25 @@ void add_currents(std::vector<SensorValue>& into, const Glider& g, double age) {
   put("m_water", g.water(), true);
 }
 
+struct Battery {
+  double volts{}, amp_hours{}, charge_percent{};
+};
+
+/// Of the energy model when the scenario gives a battery; else a linear drain that nothing depends on. Charge goes with
+/// the mean of the two voltages.
+Battery battery_of(const Glider& g, double hours) {
+  const auto left = g.battery_left();
+  if (!left) return {16.4 - 0.0015 * hours, 0.75 + 0.35 * hours, std::fmax(0.0, 99.9 - 0.05 * hours)};
+  const auto& spec = g.setup().energy;
+  return {spec.volts_empty + (spec.volts_full - spec.volts_empty) * *left,
+          g.energy().total_wh() / (0.5 * (spec.volts_full + spec.volts_empty)), 100 * *left};
+}
+
 /// In the order of the alphabet, as the dialog has them.
 std::vector<SensorValue> sensors_of(const Glider& g, double now_s) {
   const auto& nav = g.navigator();
   const double hours = (now_s - g.setup().start_s + kBeforeStart) / 3600.0;
+  const auto battery = battery_of(g, hours);
   const double water_age = now_s - g.water_s() + 3.0;
   const auto at = [](double deg) { return dialog::ddmm(deg, 4); };
   const auto wpt = nav.waypoint();
@@ -33,8 +48,8 @@ std::vector<SensorValue> sensors_of(const Glider& g, double now_s) {
   std::vector<SensorValue> s{{"c_wpt_lat", "lat", at(wpt.lat.degrees()), wpt_age},
                              {"c_wpt_lon", "lon", at(wpt.lon.degrees()), wpt_age},
                              {"m_avg_speed", "m/s", nav.belief().speed.si(), now_s - g.surfaced_s()},
-                             {"m_battery", "volts", 16.4 - 0.0015 * hours, 3.76},
-                             {"m_coulomb_amphr_total", "amp-hrs", 0.75 + 0.35 * hours, 3.872}};
+                             {"m_battery", "volts", battery.volts, 3.76},
+                             {"m_coulomb_amphr_total", "amp-hrs", battery.amp_hours, 3.872}};
   std::vector<SensorValue> currents;
   add_currents(currents, g, water_age);
   const auto take = [&](std::size_t from, std::size_t n) {
@@ -46,7 +61,7 @@ std::vector<SensorValue> sensors_of(const Glider& g, double now_s) {
   if (measured) take(2, 2);
   s.push_back({"m_iridium_signal_strength", "nodim", 5, 28.087});
   s.push_back({"m_leakdetect_voltage", "volts", 2.478, 43.821});
-  s.push_back({"m_lithium_battery_relative_charge", "%", std::fmax(0.0, 99.9 - 0.05 * hours), 3.886});
+  s.push_back({"m_lithium_battery_relative_charge", "%", battery.charge_percent, 3.886});
   s.push_back({"m_vacuum", "inHg", 8.4, 47.783});
   take(measured ? 4 : 0, 2);
   s.push_back({"u_use_current_correction", "nodim", static_cast<double>(nav.belief().correction), std::nullopt});
@@ -69,13 +84,13 @@ Report report_of(const Glider& g, double now_s, double dives_in_s) {
   r.mission_started_s = setup.start_s - kBeforeStart + setup.clock_skew_s;
   r.mission_number = setup.mission_number;
   r.segment = g.segment();
-  if (g.mission_over()) {
-    r.reason = "heading not commanded";
-    r.behavior = "surface_3";
-    r.start_when = 3.0;
-  }
-  r.dr = g.fix();
-  r.dr_age_s = now_s - g.fix_s() - 1.1;
+  r.reason = g.because().text;
+  r.behavior = g.because().behavior;
+  r.start_when = g.because().start_when;
+  if (g.abort()) r.mission_file = "lastgasp.mi";
+  r.dr = g.reckoned();
+  r.dr_age_s = now_s - g.fixes_done_s() - 1.1;
+  r.invalid = g.invalid_fix();
   r.gps = g.fix();
   r.gps_age_s = now_s - g.fix_s();
   r.sensors = sensors_of(g, now_s);

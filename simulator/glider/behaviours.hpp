@@ -9,8 +9,11 @@
 #include "core/base/geo.hpp"
 #include "core/base/time.hpp"
 #include "simulator/glider/dynamics.hpp"
+#include "simulator/glider/energy.hpp"
 #include "simulator/glider/frame.hpp"
 #include "simulator/glider/navigation.hpp"
+#include "simulator/glider/rules.hpp"
+#include "simulator/glider/surroundings.hpp"
 #include "simulator/random.hpp"
 
 namespace glidehelm::simulator {
@@ -44,6 +47,14 @@ struct GliderSetup {
   double clock_skew_s{};  ///< added to what the glider takes for UTC
   GotoList list;          ///< what it starts with
   std::uint64_t seed{1};
+  SurfaceRules surfacing;
+  AbortRules aborts;
+  GpsSetup gps;
+  WindSetup wind;
+  EnergySpec energy;
+  FaultPlan altimeter_silent;  ///< in the dive after a surfacing
+  bool speed_by_depth_rate{};  ///< the glider learns its speed from depth rate and angle (slocum.md 4.1) …
+  Radians angle_error{};       ///< … with an angle that is this much too steep
 };
 
 /// One dive, as it truly was.
@@ -53,6 +64,9 @@ struct DiveRecord {
   DiveTruth truth;
   Metres deepest;
   int hits{};  ///< waypoints hit in this dive
+  int half_cycles{}, touched_floor{};
+  Energy energy;    ///< of this dive and of the surface interval before it
+  Because because;  ///< what brought it up
   std::optional<Accident> accident;
 };
 
@@ -67,6 +81,9 @@ struct DiveRecord {
 ///
 /// m_final is complete once the second fix has shown the drift velocity, both are clipped at 2.8 m/s a component. With
 /// correction 0 the current is measured but not used.
+///
+/// Without a valid fix nothing is measured, the older fix stays, and dead reckoning goes on from where it was. After an
+/// abort the glider stays on the surface in `lastgasp.mi`: `dive` then only drifts to the next call.
 class Glider {
  public:
   Glider(GliderSetup setup, ocean::Ocean truth, const chart::Chart& chart);
@@ -86,14 +103,37 @@ class Glider {
   [[nodiscard]] double surfaced_s() const { return surfaced_s_; }
   [[nodiscard]] GeoPoint fix() const { return fix_; }
   [[nodiscard]] double fix_s() const { return fix_s_; }
+  /// When the receiver was through, with or without a fix: calls and the surface interval count from here.
+  [[nodiscard]] double fixes_done_s() const { return fixes_done_s_; }
+  /// This surfacing's fix is valid.
+  [[nodiscard]] bool fix_is_fresh() const { return fresh_; }
+  /// The last fix that the receiver flagged invalid.
+  [[nodiscard]] std::optional<GeoPoint> invalid_fix() const { return invalid_fix_; }
+  /// Dead-reckoned position; on the surface it follows the fixes.
+  [[nodiscard]] GeoPoint reckoned() const { return fresh_ ? fix_ : navigator_.reckoned(); }
   [[nodiscard]] GeoPoint position() const { return dynamics_.position(); }
   /// Last measured currents; none before the first dive of the run unless the setup has a prior one.
   [[nodiscard]] std::optional<Current> water() const { return water_; }
   [[nodiscard]] std::optional<Current> initial_water() const { return initial_water_; }
   [[nodiscard]] double water_s() const { return water_s_; }
   [[nodiscard]] int segment() const { return segment_; }
-  /// A list with end_action 0 was finished: the mission is over.
-  [[nodiscard]] bool mission_over() const { return navigator_.quit(); }
+  /// A list with end_action 0 was finished and heading idle ends the mission.
+  [[nodiscard]] bool mission_over() const {
+    return navigator_.quit() && setup_.surfacing.heading_idle == SurfaceRules::Idle::quit && !abort_;
+  }
+  [[nodiscard]] const Because& because() const { return because_; }
+  /// The mission was aborted; it stays so.
+  [[nodiscard]] const std::optional<Abort>& abort() const { return abort_; }
+  /// After an abort: nothing more is to come.
+  [[nodiscard]] bool fallback_is_over() const { return abort_ && fallback_calls_ >= setup_.aborts.fallback_calls; }
+  /// A list that Ctrl-F could not read aborts too, when a fallback follows; else the caller ends the run.
+  void abort_by_behaviour_error(const BehaviourError& error, double now_s);
+  /// A call came through and lasted so long.
+  void called(double at_s, double seconds);
+  /// Used since the start of the run.
+  [[nodiscard]] Energy energy() const;
+  /// Share of battery_wh that is left, in [0, 1]; none when no battery is watched.
+  [[nodiscard]] std::optional<double> battery_left() const;
   /// First instant of the run with a true position inside `radius` of `goal`; watched from now on.
   void watch(GeoPoint goal, Metres radius);
   [[nodiscard]] std::optional<double> arrived_s() const { return arrived_s_; }
@@ -102,12 +142,28 @@ class Glider {
  private:
   void look_at_goal();
   std::optional<Accident> drift(double until_s);
+  void fly(DiveRecord& record);
+  [[nodiscard]] double stint_limit();
+  [[nodiscard]] std::optional<Because> reason_to_surface(int hits_before);
+  void look_for_abort();
+  [[nodiscard]] std::optional<MetresPerSecond> speed_by_depth_rate();
+  void account_for_dive(DiveRecord& record);
 
   GliderSetup setup_;
   Dynamics dynamics_;
   Navigator navigator_;
   Random random_;
-  double dived_s_{}, surfaced_s_{}, fix_s_{}, water_s_{};
+  Gps gps_;
+  Wind wind_;
+  Random luck_;
+  double dived_s_{}, surfaced_s_{}, fix_s_{}, fixes_done_s_{}, water_s_{}, heard_s_{};
+  bool fresh_{true}, measurable_{}, idle_told_{};
+  std::optional<GeoPoint> invalid_fix_;
+  Because because_{because::kYoIsOver};
+  std::optional<Abort> abort_;
+  int fallback_calls_{};
+  Energy before_, since_surfacing_;
+  double speed_sum_{}, speed_time_{};
   GeoPoint fix_;
   std::optional<Current> water_, initial_water_;
   int segment_{};

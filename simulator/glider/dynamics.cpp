@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "core/base/local_metric.hpp"
 #include "core/base/utc.hpp"
@@ -12,20 +13,57 @@ namespace glidehelm::simulator {
 std::string Accident::message() const {
   const char* word = what == What::aground      ? "aground"
                      : what == What::left_truth ? "left the area of the true ocean"
+                     : what == What::sank       ? "cannot climb"
                                                 : "the true ocean has no data after this time";
   char place[64];
   std::snprintf(place, sizeof place, "%.5f, %.5f", at.lat.degrees(), at.lon.degrees());
   return std::string{word} + " at " + place + ", " + utc_text(instant_at(t_s));
 }
 
+Dynamics::Dynamics(Hull hull, ocean::Ocean truth, const chart::Chart& chart)
+    : hull_{hull}, truth_{truth}, chart_{&chart}, seabed_{hull.seabed, truth.dive} {
+  if (!hull_.body) return;
+  attack_dive_ = angle_of_attack(*hull_.body, hull_.body->pitch_dive);
+  attack_climb_ = angle_of_attack(*hull_.body, hull_.body->pitch_climb);
+}
+
 void Dynamics::place(GeoPoint at, double t_s) {
   lat_ = at.lat.radians();
   lon_ = at.lon.radians();
-  t_s_ = t_s;
+  t_s_ = clean_s_ = t_s;
   depth_ = 0;
 }
 
-void Dynamics::begin_dive() {
+Leg Dynamics::leg(bool down, Metres depth) const {
+  const double clean =
+      hull_.fouling_per_day == 0 ? 1.0 : std::pow(1 - hull_.fouling_per_day, (t_s_ - clean_s_) / 86'400.0);
+  if (!hull_.body) {
+    const double u = hull_.speed.si() * clean;
+    return {u, u * std::tan(hull_.glide_angle.si()), hull_.glide_angle.si()};
+  }
+  const auto flight = steady_flight(*hull_.body, down, depth, down ? attack_dive_ : attack_climb_);
+  if (!flight) return {};
+  return {clean * flight->horizontal.si(), clean * flight->vertical.si(), flight->path.si()};
+}
+
+/// ∫ dz/w(z) by Simpson's rule: w changes by tens of percent over a dive at most, smoothly.
+double Dynamics::climb_seconds() const {
+  const auto slowness = [&](double z) {
+    const double w = leg(false, Metres{z}).vertical;
+    return w > 0 ? 1 / w : std::numeric_limits<double>::infinity();
+  };
+  if (!hull_.body) return depth_ * slowness(depth_);
+  constexpr int kPieces = 8;
+  double sum = slowness(0) + slowness(depth_);
+  for (int i = 1; i < kPieces; ++i) sum += (i % 2 == 1 ? 4 : 2) * slowness(depth_ * i / kPieces);
+  return sum * depth_ / (3 * kPieces);
+}
+
+void Dynamics::begin_dive(const DiveOrders& orders) {
+  orders_ = orders;
+  half_cycles_ = pumped_ = touched_ = 0;
+  pumped_depths_ = 0;
+  coming_up_ = false;
   down_ = true;
   depth_ = deepest_ = 0;
   swum_s_ = sum_east_ = sum_north_ = water_east_ = water_north_ = 0;
@@ -71,6 +109,9 @@ std::optional<Accident> Dynamics::move(const ocean::FieldRef& field, double east
   t_s_ += dt;
   water_east_ += dt * c.east.si();
   water_north_ += dt * c.north.si();
+  if (seabed_.exists())
+    if (const auto floor = seabed_.depth(position(), t_s_, Metres{1}); floor && floor->si() < 0.5)
+      return Accident{Accident::What::aground, position(), t_s_};
   // One array read excludes land nearly everywhere; only beside the shore is the coastline itself asked.
   constexpr double kNearShore = 500.0;
   if (chart_->has_coast() && chart_->clearance_at_least(lat_, lon_) < kNearShore && chart_->is_land(position()))
@@ -78,23 +119,50 @@ std::optional<Accident> Dynamics::move(const ocean::FieldRef& field, double east
   return std::nullopt;
 }
 
+void Dynamics::turn_up() {
+  down_ = false;
+  ++half_cycles_;
+  ++pumped_;
+  pumped_depths_ += depth_;
+}
+
 /// The yo turns at its limits; the last climb starts when the way up takes all the time that is left.
 void Dynamics::turn(double remaining, double dt) {
-  const double rate = hull_.speed.si() * std::tan(hull_.glide_angle.si());
-  if (depth_ >= rate * (remaining - 2 * dt))
-    down_ = false;
-  else if (depth_ >= hull_.dive_depth.si())
-    down_ = false;
-  else if (depth_ <= hull_.climb_to.si())
-    down_ = true;
+  if (coming_up_ || yo_is_over() || climb_seconds() >= remaining - 2 * dt) {
+    if (down_) turn_up();
+  } else if (down_) {
+    const bool floats = leg().vertical <= 0;
+    if (depth_ >= hull_.dive_depth.si() || floats) turn_up();
+  } else if (depth_ <= hull_.climb_to.si()) {
+    ++half_cycles_;
+    down_ = !yo_is_over();
+  }
+}
+
+/// The altimeter turns a dive in time; what it does not hear, the hull feels.
+void Dynamics::meet_floor() {
+  if (!seabed_.exists()) return;
+  const auto floor = seabed_.depth(position(), t_s_, Metres{depth_ + std::max(1.0, hull_.altimeter_range.si())});
+  if (!floor) return;
+  const double altitude = floor->si() - depth_;
+  if (altitude <= 0) {
+    ++touched_;
+    depth_ = floor->si();
+    if (down_) turn_up();
+  } else if (down_ && orders_.altimeter && altitude <= hull_.altimeter_range.si() &&
+             altitude <= hull_.target_altitude.si()) {
+    turn_up();
+  }
 }
 
 std::optional<Accident> Dynamics::swim(Heading wanted, double dt, double remaining) {
   turn(remaining, dt);
+  meet_floor();
   const Heading heading = wanted + hull_.heading_bias;
-  const double u = hull_.speed.si();
-  const double rate = u * std::tan(hull_.glide_angle.si());
-  const double sink = down_ ? rate : -rate;
+  const auto now = leg();
+  if (!down_ && now.vertical <= 0) return Accident{Accident::What::sank, position(), t_s_};
+  const double u = now.horizontal;
+  const double sink = down_ ? now.vertical : -now.vertical;
   if (auto accident = move(truth_.dive, u * heading.east(), u * heading.north(), dt, sink)) return accident;
   depth_ = std::clamp(depth_ + sink * dt, 0.0, hull_.dive_depth.si());
   deepest_ = std::max(deepest_, depth_);

@@ -61,10 +61,10 @@ void Navigator::hit_all(double now_s) {
   }
 }
 
-Heading Navigator::cycle(double now_s, double dt) {
+Heading Navigator::cycle(double now_s, double dt, std::optional<MetresPerSecond> speed_now) {
   hit_all(now_s);
   if (!ended_) heading_ = aim(geodesic(reckoned(), waypoint()).departing, used_, belief_.speed);
-  const double u = belief_.speed.si();
+  const double u = speed_now.value_or(belief_.speed).si();
   const auto metric = LocalMetric::at(lat_);
   lat_ += dt * (u * heading_.north() + used_.north.si()) / metric.meridian_radius;
   lon_ += dt * (u * heading_.east() + used_.east.si()) / metric.parallel_radius;

@@ -37,7 +37,10 @@ class Navigator {
   /// Dead reckoning starts here; `measured` is the last depth-averaged current, used with correction 1 only.
   void dive(GeoPoint at, double now_s, Current measured);
   /// One cycle of `dt` seconds from epoch second `now_s`: hits, aims, reckons. Returns the heading to hold for `dt`.
-  Heading cycle(double now_s, double dt);
+  /// `speed_now` is what it reckons with when it measures its speed; the aim always takes the believed one.
+  Heading cycle(double now_s, double dt, std::optional<MetresPerSecond> speed_now = std::nullopt);
+  /// Û from now on (m_avg_speed).
+  void believe(MetresPerSecond speed) { belief_.speed = speed; }
 
   [[nodiscard]] GeoPoint reckoned() const { return GeoPoint::from_kernel(lat_, lon_); }
   /// The current that dead reckoning uses in this dive: zero with correction 0.

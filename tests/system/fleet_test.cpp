@@ -359,7 +359,7 @@ TEST_CASE("a fleet on bad lines: every surfacing is accounted for, and no file g
 TEST_CASE("a fleet on bad lines flies to the same bytes again") {
   const auto fly = [] {
     Voyage voyage{6, 0.3, 1};
-    voyage.fly(std::chrono::seconds{120});
+    voyage.fly(std::chrono::seconds{140});
     std::string all = voyage.results.dump();
     for (const auto& g : voyage.scenario.gliders)
       for (const auto& file : voyage.archived(g.plan.setup.name)) all += file;

@@ -73,6 +73,7 @@ std::string results_json(const Simulation& simulation, std::uint64_t seed) {
     g["lists_taken"] = r.lists_taken;
     g["behaviour_errors"] = r.behaviour_errors;
     g["closest_m"] = r.closest.si();
+    g["energy_wh"] = simulation.glider(i).energy().total_wh();
     g["track"] = nlohmann::ordered_json::array();
     for (const auto& s : simulation.surfacings(i)) {
       nlohmann::ordered_json row;
@@ -92,6 +93,9 @@ std::string results_json(const Simulation& simulation, std::uint64_t seed) {
       row["connections"] = s.connections;
       row["bytes"] = s.bytes;
       row["whole_fixes"] = s.whole_fixes;
+      row["because"] = s.because.text;
+      row["fix_is_fresh"] = s.fix_is_fresh;
+      row["energy_wh"] = {{"pump", s.energy.pump_wh}, {"hotel", s.energy.hotel_wh}, {"call", s.energy.call_wh}};
       row["to_goal_m"] = s.to_goal.si();
       g["track"].push_back(std::move(row));
     }

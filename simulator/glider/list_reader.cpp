@@ -1,6 +1,7 @@
 #include "simulator/glider/list_reader.hpp"
 
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <set>
 
@@ -114,14 +115,32 @@ class ListReader {
     return none();
   }
 
+  std::optional<BehaviourError> one_of(const std::string& name, double value, std::initializer_list<int> allowed,
+                                       int& into) const {
+    for (const int each : allowed)
+      if (value == each) {
+        into = each;
+        return none();
+      }
+    std::string all;
+    for (const int each : allowed) all += (all.empty() ? "" : ", ") + std::to_string(each);
+    return fail("b_arg " + name + " is none of " + all);
+  }
+
   std::optional<BehaviourError> assign(const std::string& name, double value) {
     int ignored = 0;
     if (name == "num_legs_to_run") {
       if (value == 0) return fail("b_arg num_legs_to_run is 0");
       return whole(name, value, -2, 1'000'000, list_.legs);
     }
-    if (name == "start_when") return whole(name, value, 0, 4, ignored);
-    if (name == "list_stop_when") return whole(name, value, 1, 15, list_.stop_when);
+    if (name == "start_when") return one_of(name, value, {0, 1, 2, 4}, list_.start_when);
+    if (name == "list_stop_when") return one_of(name, value, {1, 2, 5, 7, 15}, list_.stop_when);
+    if (name == "primary_wpt") return whole(name, value, -2, 8, ignored);
+    if (name == "primary_stop_when") return one_of(name, value, {1, 2, 5, 7, 15, 17, 18}, ignored);
+    if (name == "primary_when_wpt_dist") {
+      if (value < 10) return fail("b_arg primary_when_wpt_dist is below 10");
+      return none();
+    }
     if (name == "initial_wpt") return whole(name, value, -2, 7, list_.initial);
     if (name == "num_waypoints") return whole(name, value, 1, static_cast<int>(kMostWaypoints), list_.declared);
     if (name == "end_action") {

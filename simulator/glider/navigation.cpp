@@ -17,8 +17,10 @@ int Navigator::first_target(GeoPoint here) const {
   const int count = static_cast<int>(list_.waypoints.size());
   if (list_.initial >= 0) return list_.initial;
   if (list_.initial == -1) {
+    // A file holds 1e-4 minute, 0.2 m: the same place may come back a rounding away.
+    constexpr Metres kSame{1.0};
     for (int i = 0; achieved_ && i < count; ++i)
-      if (list_.waypoints[static_cast<std::size_t>(i)] == *achieved_) return (i + 1) % count;
+      if (distance(list_.waypoints[static_cast<std::size_t>(i)], *achieved_) < kSame) return (i + 1) % count;
     return 0;
   }
   const auto nearer = [&](const GeoPoint& a, const GeoPoint& b) { return distance(here, a) < distance(here, b); };
@@ -45,7 +47,7 @@ void Navigator::hit_all(double now_s) {
   for (int tries = 0; tries < count && !ended_; ++tries) {  // a list inside one radius must not spin for ever
     const auto goal = waypoint();
     // The geodesic distance never falls below this bound, and a far waypoint cannot be hit.
-    if (list_.stop_when != 7 ||
+    if (list_.stop_when != 7 || list_.start_when != 0 ||
         distance_lower_bound(lat_, lon_, goal.lat.radians(), goal.lon.radians()) >= list_.radius.si() ||
         distance(reckoned(), goal) >= list_.radius)
       return;
@@ -63,7 +65,8 @@ void Navigator::hit_all(double now_s) {
 
 Heading Navigator::cycle(double now_s, double dt, std::optional<MetresPerSecond> speed_now) {
   hit_all(now_s);
-  if (!ended_) heading_ = aim(geodesic(reckoned(), waypoint()).departing, used_, belief_.speed);
+  if (!ended_ && list_.start_when == 0)
+    heading_ = aim(geodesic(reckoned(), waypoint()).departing, used_, belief_.speed);
   const double u = speed_now.value_or(belief_.speed).si();
   const auto metric = LocalMetric::at(lat_);
   lat_ += dt * (u * heading_.north() + used_.north.si()) / metric.meridian_radius;

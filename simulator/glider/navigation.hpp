@@ -26,6 +26,8 @@ struct Belief {
 /// After the last waypoint of a list that ends (−2 or N legs) the last heading is held; with end_action 0 `quit()`
 /// tells that the mission is over.
 ///
+/// A list that never starts (start_when other than 0) is not steered to: the last heading is held.
+///
 /// Works in true directions: the rotated local frame appears only where the dialog prints (frame.hpp). That is exact
 /// because the frame turns bearing, current and heading alike.
 class Navigator {

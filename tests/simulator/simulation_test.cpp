@@ -238,3 +238,54 @@ TEST_CASE("the older faults strike when they did before the newer ones were ther
   };
   CHECK(struck(false) == struck(true));
 }
+
+TEST_CASE("an aborted mission ends the run, or goes on from call to call as lastgasp.mi and tells why") {
+  for (const int calls : {0, 3}) {
+    MemoryToGlider folder;
+    auto plan = plan_to(60);
+    plan.setup.aborts.max_wpt_distance = Metres{50'000};
+    plan.setup.aborts.fallback_calls = calls;
+    Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{}, 1};
+    const auto said = run(sim);
+    CHECK(sim.result(0).end == RunEnd::aborted);
+    CHECK(sim.result(0).reason.find("MS_ABORT_WPT_TOOFAR(18)") == 0);
+    CHECK(sim.result(0).surfacings == 2 + calls);  // before the dive, after it, and the fallback's
+    CHECK((said.find("MissionName:lastgasp.mi") != std::string::npos));
+    CHECK((said.find("ABORT HISTORY: total since reset: 1") != std::string::npos));
+    CHECK((said.find("MS_ABORT_WPT_TOOFAR") != std::string::npos));
+  }
+}
+
+TEST_CASE("a bad list is followed by the fallback when there is one") {
+  MemoryToGlider folder;
+  folder.offer("goto_l10.ma", "behavior_name=goto_list\n");
+  auto plan = plan_to(30);
+  plan.setup.aborts.fallback_calls = 1;
+  Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{}, 1};
+  run(sim);
+  CHECK(sim.result(0).end == RunEnd::aborted);
+  CHECK(sim.result(0).reason.find("MS_ABORT_BEH_ERROR(6)") == 0);
+}
+
+TEST_CASE("the dialog names the behaviour that brought the glider up, and an old or invalid fix") {
+  MemoryToGlider folder;
+  auto plan = plan_to(200);
+  plan.setup.surfacing.every_s = 3600;
+  plan.setup.gps.stale.surfacings = {3};
+  plan.setup.gps.invalid.surfacings = {4};
+  plan.setup.energy.battery_wh = 1000;
+  Simulation sim{{{plan, &folder}}, {kStill, kStill}, kOpen, EndPlan{true, 4, std::nullopt}, 1};
+  const auto said = run(sim);
+  CHECK((said.find("Because:timeout expired [behavior surface_6 start_when = 9.0]") != std::string::npos));
+  REQUIRE(sim.surfacings(0).size() == 4);
+  const auto& third = sim.surfacings(0)[2];
+  CHECK_FALSE(third.fix_is_fresh);
+  CHECK(third.fix_s == sim.surfacings(0)[1].fix_s);
+  // The fix of the second surfacing is printed with its age: a dive of at least an hour and the interval before it.
+  CHECK(third.dive_s - third.fix_s > 3600 + 900);
+  CHECK(third.dive_s - third.surfaced_s == Approx(960));
+  CHECK(sim.surfacings(0)[3].fix_s == third.fix_s);
+  CHECK(sim.glider(0).invalid_fix());
+  CHECK(sim.result(0).energy.call_wh == Approx(4 * 6.0 * (900 - 45 - 60) / 3600).epsilon(1e-9));
+  CHECK(sim.result(0).energy.total_wh() > sim.surfacings(0)[1].energy.total_wh());
+}

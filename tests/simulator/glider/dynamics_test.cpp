@@ -171,3 +171,156 @@ TEST_CASE("water without data carries the glider with the last current met") {
   CHECK(d.position().lat.degrees() > 40.015);
   CHECK(d.dive_truth().water.east.si() == Approx(0.05).epsilon(1e-9));
 }
+
+namespace {
+
+simulator::SeabedSpec plane(double depth, double slope = 0, double toward_deg = 0) {
+  simulator::SeabedSpec s;
+  s.kind = simulator::SeabedSpec::Kind::plane;
+  s.origin = kHome;
+  s.depth = Metres{depth};
+  s.slope = slope;
+  s.deepens = Bearing{degrees(toward_deg)};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("with a balance of forces in even water the way is the leg's horizontal speed times time") {
+  Hull hull;
+  hull.body.emplace();
+  hull.body->compressibility_per_pa = 0;
+  const auto leg = simulator::steady_flight(*hull.body, true, Metres{0});
+  REQUIRE(leg);
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  REQUIRE_FALSE(swim(d, Heading{}, 14'400, 4));
+  // Up and down are equal (flight_test); midpoint steps leave a millimetre, the buoyancy's rounding 1e-9 of 6 km.
+  CHECK(distance(d.position(), kHome).si() == Approx(14'400 * leg->horizontal.si()).margin(0.01));
+  CHECK(d.leg(true, Metres{100}).vertical == Approx(leg->vertical.si()).epsilon(1e-9));
+  CHECK(d.deepest().si() == Approx(200).margin(4 * leg->vertical.si()));
+}
+
+TEST_CASE("a hull that gives way climbs slower than it dives, and is at the surface when the dive is over") {
+  Hull hull;
+  hull.body.emplace();
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  d.begin_dive();
+  double before = 0, last = 0;
+  for (double left = 14'400; left > 0; left -= 4) {
+    REQUIRE_FALSE(d.swim(Heading{}, 4, left));
+    last = before;
+    before = d.depth().si();
+  }
+  CHECK(d.depth().si() == 0);
+  // The last climb begins at most two cycles early (turn) and its time is known to Simpson's error, far below a cycle:
+  // one cycle before the end at most four cycles' climb are left.
+  CHECK(last <= 4 * 4 * d.leg(false, Metres{0}).vertical);
+  CHECK(d.leg(false, Metres{200}).vertical < d.leg(true, Metres{200}).vertical);
+}
+
+TEST_CASE("the time of a climb is the integral of slowness over depth") {
+  Hull hull;
+  hull.body.emplace();
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  d.begin_dive();
+  for (int i = 0; i < 100; ++i) REQUIRE_FALSE(d.swim(Heading{}, 4, 1e6));
+  // An independent sum of 10⁴ midpoints; its error is (Δz)² w''/24, below 1e-6; Simpson's below 1e-5 of it.
+  const double z = d.depth().si();
+  REQUIRE(z > 50);
+  double sum = 0;
+  for (int i = 0; i < 10'000; ++i) sum += z / 1e4 / d.leg(false, Metres{z * (i + 0.5) / 1e4}).vertical;
+  CHECK(d.climb_seconds() == Approx(sum).epsilon(1e-4));
+}
+
+TEST_CASE("a dive that floats turns up there, a climb that cannot rise is an accident") {
+  Hull hull;
+  hull.body.emplace();
+  hull.body->compressibility_per_pa = 0;
+  hull.body->density_per_m = 0.02;  // gone at 146.8 m (flight_test)
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  REQUIRE_FALSE(swim(d, Heading{}, 14'400, 4));
+  CHECK(d.deepest().si() == Approx(146.8).margin(1));
+
+  hull.body->density_per_m = 0;
+  hull.body->pump_climb_m3 = 0;
+  Dynamics e{hull, {kStill, kStill}, kOpen};
+  e.place(kHome, 0);
+  const auto accident = swim(e, Heading{}, 14'400, 4);
+  REQUIRE(accident);
+  CHECK(accident->what == Accident::What::sank);
+  CHECK(accident->message().find("cannot climb at 40.0") == 0);
+}
+
+TEST_CASE("growth takes its share of the speed each day and keeps the angle") {
+  Hull hull;
+  hull.fouling_per_day = 0.05;
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  REQUIRE_FALSE(d.drift(2 * 86'400.0));
+  const auto leg = d.leg(true, Metres{10});
+  CHECK(leg.horizontal == Approx(0.3 * 0.95 * 0.95).epsilon(1e-12));
+  CHECK(leg.vertical / leg.horizontal == Approx(std::tan(degrees(26).si())).epsilon(1e-12));
+  // In a stint of 4 h: ∫ 0.3·0.95^(2 + t/day) dt, a step at a time: the step's own change, 4 s·6e-7/s, is 2.4e-6.
+  REQUIRE_FALSE(swim(d, Heading{}, 14'400, 4));
+  const double k = std::log(0.95) / 86'400;
+  const double way = 0.3 * 0.95 * 0.95 * (std::exp(k * 14'400) - 1) / k;
+  CHECK(distance(d.position(), kHome).si() == Approx(way).epsilon(1e-5));
+}
+
+TEST_CASE("the altimeter turns the yo above the floor by the target altitude") {
+  Hull hull;
+  hull.seabed = plane(80);
+  hull.target_altitude = Metres{12};
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  REQUIRE_FALSE(swim(d, Heading{}, 14'400, 4));
+  // It looks once a cycle: the turn comes at most a cycle's sinking, 0.59 m, late.
+  CHECK(d.deepest().si() >= 68);
+  CHECK(d.deepest().si() <= 68 + 4 * 0.1463 + 1e-9);
+  CHECK(d.touched() == 0);
+}
+
+TEST_CASE("a floor that is not heard is touched and turns the yo too") {
+  Hull hull;
+  hull.seabed = plane(80);
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  d.begin_dive({std::nullopt, false});
+  for (double left = 14'400; left > 1e-9; left -= 4) REQUIRE_FALSE(d.swim(Heading{}, 4, left));
+  CHECK(d.touched() > 0);
+  CHECK(d.deepest().si() == Approx(80).margin(4 * 0.1463));
+  CHECK(d.depth().si() == 0);
+}
+
+TEST_CASE("over a slope the yo follows the floor, and where the floor comes out of the water it is aground") {
+  Hull hull;
+  hull.seabed = plane(100, 0.04, 0);  // shoals to the south: 2500 m away it is out of the water
+  Dynamics d{hull, {kStill, kStill}, kOpen};
+  d.place(kHome, 0);
+  const auto accident = swim(d, Heading{degrees(180)}, 14'400, 4);
+  REQUIRE(accident);
+  CHECK(accident->what == Accident::What::aground);
+  // Aground in less than half a metre of water: 12.5 m before the line, and a step of 1.2 m.
+  CHECK(distance(kHome, accident->at).si() == Approx(2500 - 12.5).margin(2));
+}
+
+TEST_CASE("a yo of N half cycles comes up after them, by the way that is left") {
+  for (const int n : {1, 2, 3, 4}) {
+    Dynamics d{Hull{}, {kStill, kStill}, kOpen};
+    d.place(kHome, 0);
+    d.begin_dive({n, true});
+    double t = 0;
+    for (; t < 20'000 && !(d.yo_is_over() && d.depth().si() == 0); t += 4) REQUIRE_FALSE(d.swim(Heading{}, 4, 1e9));
+    const double rate = 0.3 * std::tan(degrees(26).si());
+    // 200 m down, then 180 m for each half cycle more; an odd number ends at 200 m, an even one at 20 m. Each turn comes up
+    // to a cycle late and so does its way back: three cycles a turn.
+    const double way = 200 + 180.0 * (n - 1) + (n % 2 == 1 ? 200 : 20);
+    CHECK(t == Approx(way / rate).margin(12.0 * n + 8));
+    CHECK(d.pumped() == (n + 1) / 2);
+    CHECK(d.pumped_depths().si() == Approx(200.0 * d.pumped()).margin(1e-9));
+  }
+}

@@ -80,6 +80,20 @@ TEST_CASE("what the firmware would take for a bad b_arg is a behaviour error tha
   CHECK(error_of(file("b_arg: initial_wpt(enum) nan\n", "1.0 2.0\n")).find("no number") != std::string::npos);
 }
 
+TEST_CASE("enums take the values that the masterdata allow and no others") {
+  for (const int allowed : {0, 1, 2, 4})
+    CHECK(read_goto_list(file("b_arg: start_when(enum) " + std::to_string(allowed) + "\n", "1.0 2.0\n")));
+  for (const int allowed : {1, 2, 5, 7, 15})
+    CHECK(read_goto_list(file("b_arg: list_stop_when(enum) " + std::to_string(allowed) + "\n", "1.0 2.0\n")));
+  CHECK(error_of(file("b_arg: start_when(enum) 3\n", "1.0 2.0\n")) == "line 4: b_arg start_when is none of 0, 1, 2, 4");
+  CHECK(error_of(file("b_arg: list_stop_when(enum) 12\n", "1.0 2.0\n")) ==
+        "line 4: b_arg list_stop_when is none of 1, 2, 5, 7, 15");
+  CHECK(
+      read_goto_list(file("b_arg: primary_wpt(enum) 0\nb_arg: primary_stop_when(enum) 15\n"
+                          "b_arg: primary_when_wpt_dist(m) 10\n",
+                          "1.0 2.0\n")));
+}
+
 TEST_CASE("what is no list of at most eight positions is a behaviour error") {
   CHECK(error_of("") == "line 0: empty file");
   CHECK(error_of(file("", "")).find("no waypoint") != std::string::npos);

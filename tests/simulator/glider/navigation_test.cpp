@@ -180,3 +180,45 @@ TEST_CASE("only list_stop_when 7 hits waypoints") {
   fly(nav, 1000, 4);
   CHECK(nav.hits() == 0);
 }
+
+TEST_CASE(
+    "the last achieved waypoint is known again from a file's rounding, and the last of a list leads to the first") {
+  const auto a = destination(kHome, Bearing{}, Metres{900}), b = destination(kHome, Bearing{}, Metres{5000});
+  Navigator nav{Belief{MetresPerSecond{0.5}, 0}};
+  nav.read(list_of({a, b}, 100), kHome, 0);
+  nav.dive(kHome, 0, {});
+  fly(nav, 2000, 4);
+  REQUIRE(nav.last_achieved() == a);
+  // 1e-4 minute is 0.19 m: half of that in each direction is what rounding does.
+  auto list = list_of({destination(a, Bearing{degrees(45)}, Metres{0.13}), b}, 100);
+  list.initial = -1;
+  nav.read(list, kHome, 2000);
+  CHECK(nav.target() == 1);
+  list.waypoints = {b, a};
+  nav.read(list, kHome, 2000);
+  CHECK(nav.target() == 0);
+  list.waypoints = {b, destination(a, Bearing{}, Metres{50})};  // another place: from the beginning
+  nav.read(list, kHome, 2000);
+  CHECK(nav.target() == 0);
+}
+
+TEST_CASE("a list whose start is never commanded is not flown") {
+  auto list = list_of({destination(kHome, Bearing{degrees(90)}, Metres{200})}, 100);
+  list.start_when = 2;
+  Navigator nav{Belief{MetresPerSecond{0.5}, 0}};
+  nav.read(list, kHome, 0);
+  nav.dive(kHome, 0, {});
+  for (const double deg : fly(nav, 1000, 4)) CHECK(deg == 0);
+  CHECK(nav.hits() == 0);
+}
+
+TEST_CASE("reckoning takes a speed measured now, the aim the believed one") {
+  Navigator nav{Belief{MetresPerSecond{0.3}, 1}};
+  nav.read(list_of({destination(kHome, Bearing{}, Metres{50'000})}, 100), kHome, 0);
+  nav.dive(kHome, 0, current(0.15, 0));
+  const auto heading = nav.cycle(0, 1000, MetresPerSecond{0.2});
+  CHECK(heading.degrees() == Approx(330).margin(1e-6));  // asin(0.15/0.3)
+  // North 0.2·cos 30° for 1000 s, one Euler step: exact in the metric of its start.
+  CHECK(distance(kHome, GeoPoint{nav.reckoned().lat, kHome.lon}).si() ==
+        Approx(1000 * 0.2 * std::cos(degrees(30).si())).epsilon(1e-4));
+}

@@ -180,6 +180,7 @@ DiveRecord Glider::dive(double at_s) {
   surfaced_s_ = record.surface_s = dynamics_.time_s();
   record.surface = dynamics_.position();
   record.because = because_;
+  if (measurable_) reckoned_s_ += surfaced_s_ - dived_s_;
   account_for_dive(record);
   ++segment_;
   return record;
@@ -232,7 +233,8 @@ std::optional<Accident> Glider::take_fixes() {
   if (!fresh_) return std::nullopt;
   fix_ = second;
   fix_s_ = t2;
-  const double dive_time = surfaced_s_ - dived_s_;
+  const double dive_time = reckoned_s_;
+  reckoned_s_ = 0;
   if (dive_time <= 0 || !measurable_) return std::nullopt;  // not dived in this run, or only drifted
   const auto used = navigator_.used();
   const auto error = offset(navigator_.reckoned(), first);

@@ -82,7 +82,8 @@ struct DiveRecord {
 /// m_final is complete once the second fix has shown the drift velocity, both are clipped at 2.8 m/s a component. With
 /// correction 0 the current is measured but not used.
 ///
-/// Without a valid fix nothing is measured, the older fix stays, and dead reckoning goes on from where it was. After an
+/// Without a valid fix nothing is measured, the older fix stays, and dead reckoning goes on from where it was; T of the
+/// next measurement is then the time of all dives since the last valid fix. After an
 /// abort the glider stays on the surface in `lastgasp.mi`: `dive` then only drifts to the next call.
 class Glider {
  public:
@@ -164,6 +165,7 @@ class Glider {
   int fallback_calls_{};
   Energy before_, since_surfacing_;
   double speed_sum_{}, speed_time_{};
+  double reckoned_s_{};  ///< under water since the last valid fix (m_dr_time)
   GeoPoint fix_;
   std::optional<Current> water_, initial_water_;
   int segment_{};

@@ -252,6 +252,10 @@ TEST_CASE("without a valid fix the older one stays, nothing is measured, and rec
     CHECK(distance(reckoned, g.navigator().reckoned()).si() == Approx(4320).margin(1));
     REQUIRE_FALSE(g.take_fixes());
     CHECK(g.fix_is_fresh());
+    // Two dives of reckoning and one surface interval that it did not see: 960 s of 28 800 too much, and 1e-4 (above).
+    REQUIRE(g.water());
+    CHECK(g.water()->east.si() == Approx(0.12 * (1 + 960.0 / 28'800)).margin(2e-4));
+    CHECK(g.water()->north.si() == Approx(-0.10 * (1 + 960.0 / 28'800)).margin(2e-4));
   }
 }
 

@@ -10,6 +10,7 @@
 #include "daemon/cli/field.hpp"
 #include "daemon/cli/mafile.hpp"
 #include "daemon/cli/plan.hpp"
+#include "daemon/cli/rehearse.hpp"
 #include "daemon/cli/replay.hpp"
 #include "daemon/world/program_version.hpp"
 #include "daemon/world/real.hpp"
@@ -80,6 +81,44 @@ void add_plan(CLI::App& app, Action& action) {
     if (*seed) o->options.seed = seed->as<std::uint64_t>();
     if (*budget) o->options.budget = Seconds{o->budget};
     action = [o](world::World& w) { return cli::run_plan(o->options, w, std::cout, std::cerr); };
+  });
+}
+
+void add_rehearse(CLI::App& app, Action& action) {
+  struct Words {
+    cli::RehearseOptions options;
+    std::string from, at;
+  };
+  auto o = std::make_shared<Words>();
+  auto& r = o->options;
+  auto* verb = app.add_subcommand("rehearse", "Fly a mission in simulated oceans that differ from the forecast");
+  verb->add_option("MISSION", r.plan.mission, "Mission file (schema glidehelm/mission/v1)")->required();
+  verb->add_option("--truth", r.truth,
+                   "Forecast files that play the ocean (default: the mission's forecast, perturbed)");
+  verb->add_option("--seeds", r.seeds, "Flights of each kind, seeds 1 to N")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  verb->add_option("--method", r.plan.method, "direct, cts-astar or best (default: the mission's)");
+  auto* from = verb->add_option("--from", o->from, "LAT,LON of the start, degrees (default: the mission's start)");
+  auto* at = verb->add_option("--at", o->at, "UTC of the start (default: the mission's start time, else now)");
+  verb->add_option("--delays", r.delays_h, "Hours by which the departure is put off, e.g. 0,6,12")
+      ->delimiter(',')
+      ->check(CLI::Range(0.0, 10000.0));
+  verb->add_option("--noise", r.noise_m_per_s, "Speed of eddies that the forecast does not have, m/s")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 2.0));
+  verb->add_option("--shift", r.shift_km, "How far everything lies elsewhere, km")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 500.0));
+  verb->add_option("--late", r.late_h, "How much earlier or later everything happens at most, hours")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 240.0));
+  verb->add_option("--html", r.html, "Write one page with map and table to this new file");
+  verb->add_flag("--json", r.json, "One JSON document on standard output (schema glidehelm/rehearsal/v1)");
+  verb->callback([=, &action] {
+    if (*from) o->options.plan.from = pair_from(o->from, "--from");
+    if (*at) o->options.plan.at = time_from(o->at, "--at");
+    action = [o](world::World& w) { return cli::run_rehearse(o->options, w, std::cout, std::cerr); };
   });
 }
 
@@ -170,6 +209,7 @@ int main(int argc, char** argv) {
   Action action;
   add_check(app, action);
   add_plan(app, action);
+  add_rehearse(app, action);
   add_replay(app, action);
   add_mafile(app, action);
   add_field(app, action);

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "config/mission.hpp"
 #include "core/base/utc.hpp"
 #include "core/planning/flight.hpp"
-#include "core/planning/registry.hpp"
 #include "daemon/candidate.hpp"
+#include "daemon/cli/new_file.hpp"
+#include "daemon/cli/plan_case.hpp"
 #include "daemon/places.hpp"
 #include "daemon/verify/judge_request.hpp"
 #include "daemon/world/program_version.hpp"
@@ -20,21 +20,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Everything that one plan depends on, resolved.
-struct Case {
-  mission::Mission mission;
-  std::string mission_text;
-  std::shared_ptr<const daemon::ChartSource> chart;
-  std::shared_ptr<const daemon::OceanSource> ocean;
-  mission::PlanningRequest request;
-};
-
-/// A failure with its exit code.
-struct Trouble {
-  int code{};
-  std::string message;
-};
-
 Json place(GeoPoint p) { return {{"lat_deg", p.lat.degrees()}, {"lon_deg", p.lon.degrees()}}; }
 Json place(GeoPoint p, double t_s) {
   Json j = place(p);
@@ -42,100 +27,6 @@ Json place(GeoPoint p, double t_s) {
   return j;
 }
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, world::Files& files,
-                                                 std::string& mission_text) {
-  const auto bytes = files.read(options.mission, std::size_t{1} << 20);
-  if (!bytes) return unexpected(Trouble{2, bytes.error().message()});
-  mission_text = *bytes;
-  const auto load = [&files](const std::string& path) -> Expected<std::string, config::Unreadable> {
-    auto text = files.read(path, std::size_t{16} << 20);
-    if (!text) return unexpected(config::Unreadable{text.error().message()});
-    return std::move(text).value();
-  };
-  auto mission = config::read_mission(*bytes, options.mission, load);
-  if (mission) return std::move(mission).value();
-  std::string all;
-  for (const auto& error : mission.error()) all += (all.empty() ? "" : "\n") + error.message();
-  return unexpected(Trouble{2, all});
-}
-
-Expected<Case, Trouble> prepare(const PlanOptions& options, world::World& world, std::ostream& err) {
-  Case c;
-  auto mission = read_mission(options, world.files, c.mission_text);
-  if (!mission) return unexpected(mission.error());
-  c.mission = std::move(mission).value();
-  if (!options.method.empty()) c.mission.method = options.method;
-  if (!planning::planner_named(c.mission.method)) {
-    std::string known;
-    for (const auto& name : planning::method_names()) known += (known.empty() ? "" : ", ") + name;
-    return unexpected(
-        Trouble{2, "--method " + c.mission.method + ": unknown or not available in this version; available: " + known});
-  }
-  if (options.from) {
-    const auto from = GeoPoint::from_degrees(options.from->first, options.from->second);
-    if (!from)
-      return unexpected(Trouble{2, "--from: " + from.error().message() +
-                                       (std::abs(options.from->first) > 90 ? " (latitude comes first)" : "")});
-    c.mission.start = *from;
-  }
-  if (!c.mission.start)
-    return unexpected(Trouble{2, "no start: give --from LAT,LON or start: {lat_deg: , lon_deg: } in the mission"});
-  auto chart = daemon::load_chart(c.mission, world.files);
-  if (!chart) return unexpected(Trouble{1, chart.error()});
-  c.chart = std::move(chart).value();
-  if (!c.chart->chart.has_coast())
-    err << "warning: no coastline (safety.coast): land is what the forecast's mask says\n";
-  auto at = options.at ? options.at : c.mission.start_time;
-  auto ocean = daemon::load_ocean(
-      {c.mission, world.files.scratch(), c.chart->chart.has_coast(), at.value_or(world.clock.utc()), c.mission.start},
-      world);
-  if (!ocean) return unexpected(Trouble{1, ocean.error()});
-  c.ocean = std::move(ocean).value();
-  const auto& facts = c.ocean->forecast.facts();
-  for (const auto& warning : facts.warnings) err << "warning: " << warning << "\n";
-  if (!at) {
-    at = world.clock.utc();
-    if (facts.has_time && (epoch_seconds(*at) > facts.last_s || epoch_seconds(*at) < facts.first_s)) {
-      at = instant_at(facts.first_s);
-      err << "note: no --at given and the forecast does not reach to now: planning from its first time "
-          << utc_text(*at) << "\n";
-    }
-  }
-  const bool outside = facts.has_time && (epoch_seconds(*at) < facts.first_s || epoch_seconds(*at) > facts.last_s);
-  // A snapshot holds for any time, and a tide comes again; a series held fast is no forecast of another month.
-  if (outside && facts.first_s < facts.last_s && c.mission.currents.outside_time != ocean::OutsideTime::cycle)
-    return unexpected(Trouble{
-        1, fmt::format("the start time {} lies outside the forecast, which reaches from {} to {}", utc_text(*at),
-                       utc_text(instant_at(facts.first_s)), utc_text(instant_at(facts.last_s)))});
-  if (outside)
-    err << "warning: the start time " << utc_text(*at) << " lies outside the forecast, which reaches from "
-        << utc_text(instant_at(facts.first_s)) << " to " << utc_text(instant_at(facts.last_s)) << "\n";
-  auto& r = c.request;
-  const auto& m = c.mission;
-  r.id = 1;
-  r.surfacing = m.glider + "/" + utc_text(*at);
-  r.problem.start = {*m.start, epoch_seconds(*at)};
-  r.problem.goal = planning::PointGoal{m.goal, m.goal_radius};
-  r.problem.glider = {m.glider,     m.horizontal_speed, m.horizontal_speed,  m.glide_angle,
-                      m.dive_depth, m.climb_to,         m.current_correction};
-  r.problem.schedule = {m.stint, m.first_stint, m.surface, m.surface};
-  if (options.water)
-    r.problem.believed_current = Current{MetresPerSecond{options.water->first}, MetresPerSecond{options.water->second}};
-  r.problem.coast_margin = m.min_distance_to_coast;
-  r.problem.headings = m.headings;
-  r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
-  r.problem.seed = options.seed.value_or(m.seed);
-  r.method = m.method;
-  r.slot = m.slot;
-  r.max_waypoints = m.max_waypoints;
-  r.list_radius = m.list_radius;
-  r.at_end = m.at_end;
-  r.stamp = *at;
-  r.horizon_wanted = m.horizon.value_or(Seconds{0});
-  r.problem.horizon_s = daemon::horizon_of(r);
-  return c;
-}
 
 Json inputs_json(const Case& c) {
   const auto& p = c.request.problem;
@@ -281,16 +172,8 @@ int write_goto(const Case& c, const mission::Candidate& found, const std::string
     err << "glidehelm plan: the verifier refuses the list, nothing written:\n" << verify::explain(*verdict);
     return 4;
   }
-  const auto slash = path.find_last_of('/');
-  const auto folder_path = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
-  const auto name = slash == std::string::npos ? path : path.substr(slash + 1);
-  auto folder = world.files.open_folder(folder_path);
-  if (!folder) {
-    err << "glidehelm plan: --goto: " << folder.error().message() << "\n";
-    return 2;
-  }
-  if (auto made = (*folder)->create(name, found.file_bytes, 0644); !made) {
-    err << "glidehelm plan: --goto: " << made.error().message() << "\n";
+  if (const auto problem = write_new_file(path, found.file_bytes, world.files); !problem.empty()) {
+    err << "glidehelm plan: --goto: " << problem << "\n";
     return 2;
   }
   return 0;
@@ -299,7 +182,7 @@ int write_goto(const Case& c, const mission::Candidate& found, const std::string
 }  // namespace
 
 int run_plan(const PlanOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
-  const auto c = prepare(options, world, err);
+  const auto c = prepare_case(options, world, err);
   if (!c) {
     err << "glidehelm plan: " << c.error().message << "\n";
     return c.error().code;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "core/mission/event.hpp"
+#include "daemon/cli/plan.hpp"
+#include "daemon/ocean_source.hpp"
+
+namespace glidehelm::cli {
+
+/// Everything that one plan depends on, resolved.
+struct Case {
+  mission::Mission mission;
+  std::string mission_text;
+  std::shared_ptr<const daemon::ChartSource> chart;
+  std::shared_ptr<const daemon::OceanSource> ocean;
+  mission::PlanningRequest request;
+};
+
+/// A failure with its exit code.
+struct Trouble {
+  int code{};
+  std::string message;
+};
+
+/// Reads mission, coast and forecast for `plan` and `rehearse`. Warnings go to `err`. The start is --from, else the mission's; the time is
+/// --at, else the mission's, else now, else the first time of the forecast.
+Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& world, std::ostream& err);
+
+}  // namespace glidehelm::cli

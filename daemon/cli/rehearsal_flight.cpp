@@ -35,7 +35,8 @@ void RehearsalFlight::take(const simulator::LineEvent& event) {
 
 void RehearsalFlight::hear(const protocol::DialogEvent& event) {
   if (const auto* name = std::get_if<protocol::NameHeard>(&event)) name_ = name->name;
-  if (const auto* read = std::get_if<protocol::BlockRead>(&event); read != nullptr && read->block.gps) hear_block(*read);
+  if (const auto* read = std::get_if<protocol::BlockRead>(&event); read != nullptr && read->block.gps)
+    hear_block(*read);
   if (const auto* window = std::get_if<protocol::WindowHeard>(&event))
     feed(mission::WindowHeard{Seconds{static_cast<double>(window->seconds)}});
   if (std::holds_alternative<protocol::MissionResumed>(event)) feed(mission::DiveBegan{});
@@ -65,8 +66,8 @@ mission::FolderSeen RehearsalFlight::look() {
 
 void RehearsalFlight::run_timers(Instant until) {
   while (!timers_.empty()) {
-    const auto first = std::min_element(timers_.begin(), timers_.end(),
-                                        [](const auto& a, const auto& b) { return a.at < b.at; });
+    const auto first =
+        std::min_element(timers_.begin(), timers_.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
     const Instant at = utc_of(first->at);
     if (at > until) return;
     utc_ = std::max(utc_, at);

@@ -127,11 +127,12 @@ std::string land_of(const Picture& picture, const Rehearsal& all, const chart::C
   for (int row = 0; row * step < picture.height(); ++row)
     for (int column = 0; column < kAcross; ++column) {
       const double x = (column + 0.5) * step, y = (row + 0.5) * step;
-      const auto p = GeoPoint::from_degrees(all.start.lat.degrees() - (y - y0) / degree,
-                                            std::remainder(all.start.lon.degrees() + (x - x0) / degree / squeeze, 360.0));
+      const auto p =
+          GeoPoint::from_degrees(all.start.lat.degrees() - (y - y0) / degree,
+                                 std::remainder(all.start.lon.degrees() + (x - x0) / degree / squeeze, 360.0));
       if (p && chart.is_land(*p))
-        land += fmt::format("M{:.1f},{:.1f}h{:.2f}v{:.2f}h-{:.2f}z", column * step, row * step, step + 0.05, step + 0.05,
-                            step + 0.05);
+        land += fmt::format("M{:.1f},{:.1f}h{:.2f}v{:.2f}h-{:.2f}z", column * step, row * step, step + 0.05,
+                            step + 0.05, step + 0.05);
     }
   return "<path class=\"land\" d=\"" + land + "\"/>\n";
 }
@@ -160,9 +161,12 @@ std::string map_of(const Rehearsal& all, const chart::Chart& chart) {
 
 constexpr const char* kStyle =
     "body{font:15px/1.45 system-ui,sans-serif;max-width:860px;margin:2em auto;padding:0 1em;color:#1b2a33}"
-    "svg{width:100%;background:#e8f1f6;border:1px solid #b9ccd6}.land{fill:#c9bfa5}.ours{fill:none;stroke:#0b6e99;stroke-width:1.6}"
-    ".other{fill:none;stroke:#b4552d;stroke-width:1;stroke-dasharray:4 3}.start{fill:#1b2a33}.goal{fill:none;stroke:#1b2a33}"
-    "table{border-collapse:collapse;margin:1em 0;width:100%}th,td{padding:.25em .6em;text-align:right;border-bottom:1px solid #d6e0e6}"
+    "svg{width:100%;background:#e8f1f6;border:1px solid "
+    "#b9ccd6}.land{fill:#c9bfa5}.ours{fill:none;stroke:#0b6e99;stroke-width:1.6}"
+    ".other{fill:none;stroke:#b4552d;stroke-width:1;stroke-dasharray:4 "
+    "3}.start{fill:#1b2a33}.goal{fill:none;stroke:#1b2a33}"
+    "table{border-collapse:collapse;margin:1em 0;width:100%}th,td{padding:.25em "
+    ".6em;text-align:right;border-bottom:1px solid #d6e0e6}"
     "th:first-child,td:first-child{text-align:left}";
 
 std::vector<std::string> row_of(const RehearsalSummary& s) {
@@ -179,8 +183,8 @@ std::vector<std::string> row_of(const RehearsalSummary& s) {
           s.median_energy_wh ? fmt::format("{:.0f}", *s.median_energy_wh) : "-"};
 }
 
-const std::vector<std::string> kColumns{"method",  "delay h",    "arrived", "median h", "10-90 % h",     "regret %",
-                                        "surfacings", "missed", "refused", "coast km", "energy Wh"};
+const std::vector<std::string> kColumns{"method",     "delay h", "arrived", "median h", "10-90 % h", "regret %",
+                                        "surfacings", "missed",  "refused", "coast km", "energy Wh"};
 
 }  // namespace
 
@@ -240,12 +244,8 @@ std::string json_text(const Rehearsal& rehearsal) {
                        {"files_refused", s.refused},
                        {"closest_coast_m", or_null(s.closest_coast)},
                        {"median_energy_wh", or_null(s.median_energy_wh)}});
-  return Json{{"schema", "glidehelm/rehearsal/v1"},
-              {"mission", rehearsal.mission},
-              {"method", rehearsal.method},
-              {"forecast", rehearsal.forecast},
-              {"truth", rehearsal.truth},
-              {"runs", std::move(runs)},
+  return Json{{"schema", "glidehelm/rehearsal/v1"}, {"mission", rehearsal.mission}, {"method", rehearsal.method},
+              {"forecast", rehearsal.forecast},     {"truth", rehearsal.truth},     {"runs", std::move(runs)},
               {"summary", std::move(summary)}}
              .dump() +
          "\n";
@@ -257,8 +257,8 @@ std::string table_text(const Rehearsal& rehearsal) {
   std::vector<std::size_t> widths(kColumns.size());
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  std::string text = fmt::format("mission {}, forecast {}\nocean: {}\n", rehearsal.mission, rehearsal.forecast,
-                                 rehearsal.truth);
+  std::string text =
+      fmt::format("mission {}, forecast {}\nocean: {}\n", rehearsal.mission, rehearsal.forecast, rehearsal.truth);
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i)
       text += i == 0 ? fmt::format("{:<{}}", row[i], widths[i]) : fmt::format("  {:>{}}", row[i], widths[i]);
@@ -269,10 +269,10 @@ std::string table_text(const Rehearsal& rehearsal) {
 
 std::string html_text(const Rehearsal& rehearsal, const chart::Chart& chart) {
   std::string page = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>Rehearsal of " +
-                     escaped(rehearsal.mission) + "</title><style>" + kStyle + "</style></head><body>\n<h1>Rehearsal of " +
-                     escaped(rehearsal.mission) + "</h1>\n<p>Forecast: " + escaped(rehearsal.forecast) +
-                     "<br>Ocean: " + escaped(rehearsal.truth) + "</p>\n" + map_of(rehearsal, chart) +
-                     "<p>Solid: " + escaped(rehearsal.method) +
+                     escaped(rehearsal.mission) + "</title><style>" + kStyle +
+                     "</style></head><body>\n<h1>Rehearsal of " + escaped(rehearsal.mission) +
+                     "</h1>\n<p>Forecast: " + escaped(rehearsal.forecast) + "<br>Ocean: " + escaped(rehearsal.truth) +
+                     "</p>\n" + map_of(rehearsal, chart) + "<p>Solid: " + escaped(rehearsal.method) +
                      ". Dashed: straight to the goal. Dot: start. Circle: goal radius.</p>\n<table><tr>";
   for (const auto& column : kColumns) page += "<th>" + column + "</th>";
   page += "</tr>\n";
@@ -281,7 +281,9 @@ std::string html_text(const Rehearsal& rehearsal, const chart::Chart& chart) {
     for (const auto& cell : row_of(s)) page += "<td>" + escaped(cell) + "</td>";
     page += "</tr>\n";
   }
-  return page + "</table>\n<p>Regret: flown against the plan that knew the ocean. Missed: surface intervals without a new list.</p>\n</body></html>\n";
+  return page +
+         "</table>\n<p>Regret: flown against the plan that knew the ocean. Missed: surface intervals without a new "
+         "list.</p>\n</body></html>\n";
 }
 
 std::string save_page(const Rehearsal& rehearsal, const chart::Chart& chart, const std::string& path,

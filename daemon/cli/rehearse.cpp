@@ -154,9 +154,10 @@ int run_rehearse(const RehearseOptions& options, world::World& world, std::ostre
   all.goal = c->mission.goal;
   all.goal_radius = c->mission.goal_radius;
   all.forecast = c->ocean->label();
-  all.truth = options.truth.empty() ? fmt::format("the forecast shifted by {:g} km, up to {:g} h early or late, with eddies of {:g} m/s",
-                                                  options.shift_km, options.late_h, options.noise_m_per_s)
-                                    : (*model)->label();
+  all.truth = options.truth.empty()
+                  ? fmt::format("the forecast shifted by {:g} km, up to {:g} h early or late, with eddies of {:g} m/s",
+                                options.shift_km, options.late_h, options.noise_m_per_s)
+                  : (*model)->label();
   const auto first = epoch_seconds(instant_at(c->request.problem.start.fix_s));
   const std::size_t flights = options.delays_h.size() * static_cast<std::size_t>(options.seeds) * 2;
   for (const double delay : options.delays_h)
@@ -166,8 +167,8 @@ int run_rehearse(const RehearseOptions& options, world::World& world, std::ostre
       const TrueOcean truth{(*model)->forecast, error_for(options, number), start_s};
       const auto known = hindcast(*c, truth.planned(), start_s);
       for (const auto& method : {c->mission.method, std::string{"direct"}}) {
-        if (method == "direct" && c->mission.method == "direct" && !all.runs.empty() &&
-            all.runs.back().seed == seed && all.runs.back().delay_h == delay)
+        if (method == "direct" && c->mission.method == "direct" && !all.runs.empty() && all.runs.back().seed == seed &&
+            all.runs.back().delay_h == delay)
           continue;
         auto setup = setup_for(*c, number, start_s, method);
         setup.end.days = (c->request.problem.horizon_s - c->request.problem.start.fix_s) / 86400;

@@ -46,6 +46,7 @@ TEST_CASE("a rehearsal flies the mission's method and direct for every seed and 
   options.seeds = 2;
   options.delays_h = {0, 6};
   options.json = true;
+  options.noise_m_per_s = options.shift_km = options.late_h = 0;
   const auto said = rehearse(options);
   INFO(said.err);
   CHECK(said.code == 0);
@@ -55,8 +56,10 @@ TEST_CASE("a rehearsal flies the mission's method and direct for every seed and 
   REQUIRE(document["summary"].size() == 4);
   for (const auto& run : document["runs"]) {
     CHECK(run["arrived"] == true);
-    // 11.1 km less the radius at 0.3 m/s is 8.4 h, against 0.02 m/s about half an hour more: the third stint.
-    CHECK(run["travel_time_s"].get<double>() / 3600 == Approx(9.2).margin(1.2));
+    // 11 106 m less the radius, 54 m of drift back in three surface intervals, northward at √(U² − 0.05²) − 0.02 with U from
+    // 0.291 to 0.309 m/s: 8.9 to 9.6 h, and the three intervals. A bias of 2° and ragged stints stay within a quarter of an hour.
+    CHECK(run["travel_time_s"].get<double>() / 3600 > 9.4);
+    CHECK(run["travel_time_s"].get<double>() / 3600 < 10.6);
     CHECK(run["files_emitted"] == run["surfacings"]);
     CHECK(run["windows_missed"] == 0);
     CHECK(run["rules"].empty());
@@ -81,7 +84,8 @@ TEST_CASE("the page of a rehearsal stands alone, and an existing file is not ove
   const std::string page{std::istreambuf_iterator<char>{file}, {}};
   CHECK(page.rfind("<!doctype html>", 0) == 0);
   CHECK(page.find("<polyline class=\"ours\"") != std::string::npos);
-  for (const char* outside : {"http:", "https:", "src=", "@import", "<script"}) CHECK(page.find(outside) == std::string::npos);
+  for (const char* outside : {"http:", "https:", "src=", "@import", "<script"})
+    CHECK(page.find(outside) == std::string::npos);
   const auto again = rehearse(options);
   CHECK(again.code == 1);
   CHECK(again.err.find("page.html") != std::string::npos);
@@ -89,7 +93,8 @@ TEST_CASE("the page of a rehearsal stands alone, and an existing file is not ove
 
 TEST_CASE("a rehearsal with nothing to fly says why") {
   test::TempFolder folder;
-  std::ofstream{folder.path / "leg.yaml"} << std::string{kMission}.replace(std::string{kMission}.find("start:"), 6, "strat:");
+  std::ofstream{folder.path / "leg.yaml"}
+      << std::string{kMission}.replace(std::string{kMission}.find("start:"), 6, "strat:");
   cli::RehearseOptions options;
   options.plan.mission = folder.path / "leg.yaml";
   const auto said = rehearse(options);

@@ -30,7 +30,8 @@ Rehearsal rehearsal() {
   all.start = geo_point(28, -15);
   all.goal = geo_point(28.5, -14.5);
   all.goal_radius = Metres{2000};
-  all.runs = {run(1, "best", 100, 90), run(1, "direct", std::nullopt, 90), run(2, "best", 120, 100), run(2, "direct", 150, 100)};
+  all.runs = {run(1, "best", 100, 90), run(1, "direct", std::nullopt, 90), run(2, "best", 120, 100),
+              run(2, "direct", 150, 100)};
   return all;
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
+#include "daemon/ingest/component.hpp"
 
 namespace glidehelm::ingest {
 
@@ -23,15 +24,14 @@ Result<std::vector<double>> raw_values(const NetcdfFile& file, const Variable& c
   auto values = file.read(coordinate);
   if (!values) return values;
   if (values->empty()) return fault("axis " + coordinate.name + " is empty");
-  const auto* fill = coordinate.find("_FillValue");
-  const double missing = fill != nullptr && !fill->numbers.empty() ? fill->numbers[0] : NAN;
+  const Missing missing{coordinate};
   for (std::size_t i = 0; i < values->size(); ++i)
-    if (!std::isfinite((*values)[i]) || (*values)[i] == missing || std::abs((*values)[i]) > 9e36)
+    if (missing((*values)[i]) || std::abs((*values)[i]) > 9e36)
       return fault("axis " + coordinate.name + " has no value at index " + std::to_string(i));
-  const auto scale = coordinate.find("scale_factor"), offset = coordinate.find("add_offset");
+  const auto scale = numbers_of(coordinate, "scale_factor"), offset = numbers_of(coordinate, "add_offset");
   for (double& value : *values) {
-    if (scale != nullptr && !scale->numbers.empty()) value *= scale->numbers[0];
-    if (offset != nullptr && !offset->numbers.empty()) value += offset->numbers[0];
+    if (!scale.empty()) value *= scale[0];
+    if (!offset.empty()) value += offset[0];
   }
   return values;
 }
@@ -76,9 +76,12 @@ Result<Ascending> latitudes(const NetcdfFile& file, const Variable& coordinate, 
                             std::vector<std::string>& warnings) {
   auto values = scaled_values(file, coordinate, units, "degrees", warnings);
   if (!values) return unexpected(values.error());
-  for (const double value : *values)
+  for (double& value : *values) {
+    // A pole that was computed in floats may lie a hair beyond itself.
+    if (std::abs(value) > 90 && std::abs(value) < 90.0001) value = std::copysign(90.0, value);
     if (std::abs(value) > 90)
       return fault("latitude " + number(value) + " in " + coordinate.name + ", allowed is -90 to 90");
+  }
   if (values->size() < 2) return fault("axis " + coordinate.name + " has one value, allowed is two or more");
   return ascending(std::move(*values), coordinate.name);
 }
@@ -130,7 +133,7 @@ Result<Ascending> times(const NetcdfFile& file, const Variable& coordinate, cons
   auto values = raw_values(file, coordinate);
   if (!values) return unexpected(values.error());
   std::string unit = coordinate.unit().value_or("");
-  if (lower(unit).find(" since ") == std::string::npos) {
+  if (!names_epoch(unit)) {
     if (!epoch)
       return fault("axis " + coordinate.name +
                    (unit.empty() ? " has no unit" : " has the unit \"" + unit + "\" without an epoch") +
@@ -145,6 +148,9 @@ Result<Ascending> times(const NetcdfFile& file, const Variable& coordinate, cons
   } else {
     const auto scaling = units.time_scaling(unit, coordinate.text("calendar"));
     if (!scaling) return fault("axis " + coordinate.name + ": " + scaling.error().what);
+    if (counts_in_months(unit))
+      warnings.push_back("axis " + coordinate.name + " counts in \"" + unit + "\": every such unit is taken as " +
+                         number(scaling->slope / 86400) + " days, as UDUNITS does");
     if (coordinate.type == Type::float32) {
       // Whole units and their eighths are what was meant; anything else was rounded when it was stored.
       double rounded = 0;

@@ -1,16 +1,15 @@
 #include "daemon/ingest/component.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
+
+#include "core/base/text.hpp"
 
 namespace glidehelm::ingest {
 
 namespace {
-
-/// A number of an attribute as the variable itself would hold it: a double 1.26765e+30 meant for a float is that float.
-double in_type(double value, Type type) {
-  return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
-}
 
 /// NC_FILL_*: what the library writes where nothing was written.
 double default_fill(Type type) {
@@ -36,62 +35,107 @@ double default_fill(Type type) {
   }
 }
 
+constexpr const char* kFillNames[] = {"_FillValue", "FillValue", "FillValue_", "_fillvalue", "fill_value"};
+
+bool same(double value, double mark) { return value == mark || std::abs(value - mark) <= 1e-6 * std::abs(mark); }
+
+/// A number of an attribute as the variable itself would hold it: a double 1.26765e+30 meant for a float is that float.
+double in_type(double value, Type type) {
+  return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
+}
+
 }  // namespace
 
-Result<Component> Component::of(const Variable& variable, const Units& units, std::vector<std::string>& warnings) {
-  Component component;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  component.stored_low_ = component.value_low_ = -kInfinity;
-  component.stored_high_ = component.value_high_ = kInfinity;
+std::vector<double> numbers_of(const Variable& variable, std::string_view attribute) {
+  const auto* found = variable.find(attribute);
+  if (found == nullptr) return {};
+  if (found->numbers.empty())
+    if (const auto number = number_from(trimmed(found->text))) return {*number};
+  return found->numbers;
+}
 
-  const auto *scale = variable.find("scale_factor"), *offset = variable.find("add_offset");
-  const bool packed = scale != nullptr || offset != nullptr;
-  if (scale != nullptr && !scale->numbers.empty()) component.scale_ = scale->numbers[0];
-  if (offset != nullptr && !offset->numbers.empty()) component.offset_ = offset->numbers[0];
+Missing::Missing(const Variable& variable) : floating_{is_floating(variable.type)} {
+  for (const char* name : kFillNames)
+    for (const double value : numbers_of(variable, name)) marks_.push_back(variable.as_meant(value));
+  if (marks_.empty()) marks_.push_back(default_fill(variable.type));
+  for (const double value : numbers_of(variable, "missing_value")) marks_.push_back(variable.as_meant(value));
+}
+
+bool Missing::operator()(double stored) const {
+  if (!std::isfinite(stored)) return true;
+  return std::any_of(marks_.begin(), marks_.end(),
+                     [&](double mark) { return floating_ ? same(stored, mark) : stored == mark; });
+}
+
+Result<Component> Component::of(const Variable& variable, const Units& units, const std::string& target,
+                                std::vector<std::string>& warnings) {
+  Component component{variable};
+  const auto scale = numbers_of(variable, "scale_factor"), offset = numbers_of(variable, "add_offset");
+  const bool packed = !scale.empty() || !offset.empty();
+  if (!scale.empty()) component.scale_ = scale[0];
+  if (!offset.empty()) component.offset_ = offset[0];
   if (!std::isfinite(component.scale_) || component.scale_ == 0 || !std::isfinite(component.offset_))
     return fault(variable.name + " has the impossible packing scale_factor " + std::to_string(component.scale_) +
                  ", add_offset " + std::to_string(component.offset_));
-
-  for (const char* name : {"_FillValue", "missing_value"})
-    if (const auto* attribute = variable.find(name))
-      for (const double value : attribute->numbers) component.missing_.push_back(in_type(value, variable.type));
-  if (variable.find("_FillValue") == nullptr) component.missing_.push_back(default_fill(variable.type));
-
-  const auto limit = [&](const char* name, std::size_t index, bool low) {
-    const auto* attribute = variable.find(name);
-    if (attribute == nullptr || attribute->numbers.size() <= index) return;
-    const bool unpacked = packed && is_floating(attribute->type) && !is_floating(variable.type);
-    const double value = unpacked ? attribute->numbers[index] : in_type(attribute->numbers[index], variable.type);
-    if (low)
-      (unpacked ? component.value_low_ : component.stored_low_) = value;
-    else
-      (unpacked ? component.value_high_ : component.stored_high_) = value;
-  };
-  limit("valid_range", 0, true);
-  limit("valid_range", 1, false);
-  limit("valid_min", 0, true);
-  limit("valid_max", 0, false);
+  if (const auto* mark = variable.find("missing_value");
+      mark != nullptr && packed && is_floating(mark->type) && !is_floating(variable.type))
+    component.missing_values_ = mark->numbers;
+  component.read_valid_range(variable, packed);
 
   const auto unit = variable.unit();
   if (!unit) {
-    warnings.push_back(variable.name + " has no unit; taken as m/s");
+    warnings.push_back(variable.name + " has no unit; taken as " + target);
     return component;
   }
-  const auto scaling = units.scaling(*unit, "m/s");
+  const auto scaling = units.scaling(*unit, target);
   if (!scaling) return fault(variable.name + ": " + scaling.error().what);
   component.to_si_ = *scaling;
   return component;
 }
 
+void Component::read_valid_range(const Variable& variable, bool packed) {
+  const auto limit = [&](const char* name, std::size_t index, bool low) {
+    const auto numbers = numbers_of(variable, name);
+    if (numbers.size() <= index) return;
+    const bool unpacked = packed && is_floating(variable.find(name)->type) && !is_floating(variable.type);
+    const double value = unpacked ? numbers[index] : in_type(variable.as_meant(numbers[index]), variable.type);
+    if (low)
+      (unpacked ? value_low_ : stored_low_) = value;
+    else
+      (unpacked ? value_high_ : stored_high_) = value;
+  };
+  limit("valid_range", 0, true);
+  limit("valid_range", 1, false);
+  limit("valid_min", 0, true);
+  limit("valid_max", 0, false);
+}
+
 double Component::operator()(double stored) const {
   constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-  // Negated, so that NaN is outside.
-  if (!(stored >= stored_low_ && stored <= stored_high_)) return kMissing;
-  for (const double value : missing_)
-    if (stored == value) return kMissing;
+  if (missing_(stored)) return kMissing;
   const double value = stored * scale_ + offset_;
-  if (!(value >= value_low_ && value <= value_high_) || !std::isfinite(value)) return kMissing;
+  if (!std::isfinite(value)) return kMissing;
+  for (const double mark : missing_values_)
+    if (same(value, mark)) return kMissing;
   return to_si_.slope == 1 && to_si_.intercept == 0 ? value : to_si_(value);
+}
+
+bool Component::outside_valid(double stored) const {
+  if (stored_low_ && stored < *stored_low_) return true;
+  if (stored_high_ && stored > *stored_high_) return true;
+  if (!value_low_ && !value_high_) return false;
+  const double value = stored * scale_ + offset_;
+  return (value_low_ && value < *value_low_) || (value_high_ && value > *value_high_);
+}
+
+std::string Component::valid_text() const {
+  const auto text = [](const std::optional<double>& stored, const std::optional<double>& value) {
+    if (!stored && !value) return std::string{"any"};
+    char buffer[40];
+    std::snprintf(buffer, sizeof buffer, "%.6g", value ? *value : *stored);
+    return std::string{buffer};
+  };
+  return text(stored_low_, value_low_) + " to " + text(stored_high_, value_high_);
 }
 
 }  // namespace glidehelm::ingest

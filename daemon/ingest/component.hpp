@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "daemon/ingest/netcdf_file.hpp"
@@ -7,20 +9,49 @@
 
 namespace glidehelm::ingest {
 
-/// How the stored numbers of a variable become values: which mean "missing", and the way to m/s.
-class Component {
- public:
-  /// Missing are NaN, _FillValue, every missing_value, the type's default fill value where no _FillValue is named (not for
-  /// bytes), and what lies outside valid_min, valid_max, valid_range (of packed variables: in the type of the attribute,
-  /// as the NetCDF Users' Guide says). A missing unit is m/s, with a warning.
-  static Result<Component> of(const Variable& variable, const Units& units, std::vector<std::string>& warnings);
+/// Numbers of an attribute; a text that is a number counts too (some writers quote what they mean). Empty when absent.
+std::vector<double> numbers_of(const Variable& variable, std::string_view attribute);
 
-  /// m/s, or NaN.
-  [[nodiscard]] double operator()(double stored) const;
+/// What marks a stored number as missing.
+class Missing {
+ public:
+  /// NaN, `_FillValue` and `missing_value` (also written `FillValue`, `FillValue_`, `_fillvalue`, `fill_value`), and the
+  /// type's default fill value where no fill value is named (not for bytes, as the NetCDF Users' Guide says). Floating
+  /// marks count to 1e-6: a mark may be kept in another precision than the values.
+  explicit Missing(const Variable& variable);
+  [[nodiscard]] bool operator()(double stored) const;
 
  private:
-  std::vector<double> missing_;
-  double stored_low_, stored_high_, value_low_, value_high_;
+  std::vector<double> marks_;
+  bool floating_{};
+};
+
+/// How the stored numbers of a variable become values: which mean "missing", and the way to a unit.
+class Component {
+ public:
+  /// A variable in m/s. A missing unit is m/s, with a warning.
+  static Result<Component> of(const Variable& variable, const Units& units, std::vector<std::string>& warnings) {
+    return of(variable, units, "m/s", warnings);
+  }
+  /// A variable in any `target` unit. valid_min, valid_max and valid_range mask nothing: they often are the range of the
+  /// producer's whole archive, or of another packing; `outside_valid` says what they would leave out.
+  static Result<Component> of(const Variable& variable, const Units& units, const std::string& target,
+                              std::vector<std::string>& warnings);
+
+  /// In the target unit, or NaN.
+  [[nodiscard]] double operator()(double stored) const;
+  /// True when a number that is not missing lies outside the valid range (of packed variables: in the type of the
+  /// attribute, as the NetCDF Users' Guide says).
+  [[nodiscard]] bool outside_valid(double stored) const;
+  /// "-5 to 5", with "any" for an end that is not named.
+  [[nodiscard]] std::string valid_text() const;
+
+ private:
+  explicit Component(const Variable& variable) : missing_{variable} {}
+  void read_valid_range(const Variable& variable, bool packed);
+  Missing missing_;
+  std::vector<double> missing_values_;  ///< marks that are written unpacked
+  std::optional<double> stored_low_, stored_high_, value_low_, value_high_;
   double scale_{1}, offset_{0};
   Scaling to_si_;
 };

@@ -20,7 +20,7 @@ constexpr std::size_t kFileAtMost = std::size_t{8} << 30;
 
 struct Arguments {
   std::vector<std::string> files;
-  std::string output, variables, epoch, area;
+  std::string output, variables, epoch, area, heights, equator_band;
 };
 
 int refuse(const std::string& what) {
@@ -54,6 +54,19 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
   if (!arguments.epoch.empty()) {
     options.time_epoch = utc_from_text(arguments.epoch);
     if (!options.time_epoch) return "--time-epoch " + arguments.epoch + ": allowed is a time like 2000-01-01T00:00:00Z";
+  }
+  using Heights = ReadOptions::Heights;
+  if (arguments.heights == "always")
+    options.heights = Heights::always;
+  else if (arguments.heights == "never")
+    options.heights = Heights::never;
+  else if (!arguments.heights.empty() && arguments.heights != "auto")
+    return "--heights " + arguments.heights + ": allowed are auto, always, never";
+  if (!arguments.equator_band.empty()) {
+    const auto degrees = number_from(arguments.equator_band);
+    if (!degrees || *degrees < 0 || *degrees > 90)
+      return "--equator-band " + arguments.equator_band + ": allowed is 0 to 90 degrees";
+    options.equator_band_deg = *degrees;
   }
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
@@ -120,7 +133,9 @@ int run(const Arguments& arguments) {
     if (!part) return refuse(name + ": " + part.error().what);
     parts.push_back(std::move(*part));
   }
-  const auto grid = join(std::move(parts));
+  auto whole = pair_halves(std::move(parts));
+  if (!whole) return refuse(whole.error().what);
+  const auto grid = join(std::move(*whole));
   if (!grid) return refuse(grid.error().what);
   for (const auto& warning : grid->facts.warnings) std::cerr << "glidehelm-ingest: warning: " << warning << '\n';
   const std::string bytes = ocean::write_grid(*grid);
@@ -141,6 +156,9 @@ int main(int argc, char** argv) {
   app.add_option("-o,--output", arguments.output, "grid to write (replaced by rename)")->required();
   app.add_option("--variables", arguments.variables, "names of the velocity variables: EAST,NORTH");
   app.add_option("--time-epoch", arguments.epoch, "epoch of a time axis whose unit names none, UTC");
+  app.add_option("--heights", arguments.heights,
+                 "currents from the height of the sea surface: auto (where there is no velocity), always, never");
+  app.add_option("--equator-band", arguments.equator_band, "degrees of latitude within which heights say nothing");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);

@@ -116,7 +116,8 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
   ocean::Grid grid{parts[0].grid.axes, newest.facts, {}};
   grid.facts.warnings = gathered_warnings(parts);
   grid.facts.sources.clear();
-  for (const auto& part : parts) grid.facts.sources.push_back(part.grid.facts.sources.front());
+  for (const auto& part : parts)
+    grid.facts.sources.insert(grid.facts.sources.end(), part.grid.facts.sources.begin(), part.grid.facts.sources.end());
   grid.axes.times_s.clear();
   const std::size_t plane = 2 * grid.axes.depths_m.size() * grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
   grid.values.reserve(plane * chosen.size());

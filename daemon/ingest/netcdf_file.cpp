@@ -60,6 +60,12 @@ const Attribute* Variable::find(std::string_view attribute) const {
   return nullptr;
 }
 
+double Variable::as_meant(double stored) const {
+  if (!is_unsigned || !(stored < 0)) return stored;
+  const double turn = type == Type::int8 ? 0x1p8 : type == Type::int16 ? 0x1p16 : type == Type::int32 ? 0x1p32 : 0x1p64;
+  return stored + turn;
+}
+
 std::string Variable::text(std::string_view attribute) const {
   const auto* found = find(attribute);
   return found != nullptr ? std::string{trimmed(found->text)} : std::string{};
@@ -78,7 +84,8 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
     : id_{std::exchange(other.id_, -1)},
       dimensions_{std::move(other.dimensions_)},
       variables_{std::move(other.variables_)},
-      attributes_{std::move(other.attributes_)} {}
+      attributes_{std::move(other.attributes_)},
+      groups_{std::move(other.groups_)} {}
 
 Result<NetcdfFile> NetcdfFile::open(std::span<const std::byte> bytes) {
   int id = -1;
@@ -145,7 +152,7 @@ Result<Done> NetcdfFile::read_header() {
     int rank = 0, count = 0;
     if (const int code = nc_inq_var(id_, v, name.data(), &type, &rank, ids.data(), &count); code != NC_NOERR)
       return library_fault("reading the variables", code);
-    Variable variable{v, name.data(), type_of(type), {}, {}};
+    Variable variable{v, name.data(), type_of(type), {}, {}, false};
     for (int d = 0; d < rank; ++d) {
       std::size_t at = 0;
       while (at < dimension_ids.size() && dimension_ids[at] != ids[static_cast<std::size_t>(d)]) ++at;
@@ -155,11 +162,29 @@ Result<Done> NetcdfFile::read_header() {
     auto attributes = read_attributes(v, count);
     if (!attributes) return unexpected(attributes.error());
     variable.attributes = std::move(*attributes);
+    const bool is_signed = variable.type == Type::int8 || variable.type == Type::int16 ||
+                           variable.type == Type::int32 || variable.type == Type::int64;
+    variable.is_unsigned = is_signed && lower(variable.text("_Unsigned")) == "true";
     variables_.push_back(std::move(variable));
   }
   auto attributes = read_attributes(NC_GLOBAL, globals);
   if (!attributes) return unexpected(attributes.error());
   attributes_ = std::move(*attributes);
+  return read_groups();
+}
+
+Result<Done> NetcdfFile::read_groups() {
+  int count = 0;
+  if (const int code = nc_inq_grps(id_, &count, nullptr); code != NC_NOERR)
+    return library_fault("listing the groups", code);
+  std::vector<int> ids(static_cast<std::size_t>(count));
+  if (count > 0) nc_inq_grps(id_, &count, ids.data());
+  for (const int group : ids) {
+    std::array<char, NC_MAX_NAME + 1> name{};
+    if (const int code = nc_inq_grpname(group, name.data()); code != NC_NOERR)
+      return library_fault("listing the groups", code);
+    groups_.emplace_back(name.data());
+  }
   return Done{};
 }
 
@@ -191,6 +216,8 @@ Result<std::vector<double>> NetcdfFile::read(const Variable& variable, std::span
   const int code = start.empty() ? nc_get_var_double(id_, variable.id, values.data())
                                  : nc_get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
   if (code != NC_NOERR) return library_fault("reading " + variable.name, code);
+  if (variable.is_unsigned)
+    for (double& value : values) value = variable.as_meant(value);
   return values;
 }
 

@@ -35,7 +35,12 @@ struct Variable {
   Type type{Type::other};
   std::vector<std::size_t> dimensions;  ///< indices into NetcdfFile::dimensions
   std::vector<Attribute> attributes;
+  /// The values are unsigned although the type is not (`_Unsigned = "true"`, for formats without unsigned types).
+  bool is_unsigned{};
 
+  /// A stored number, or one of an attribute that is compared with stored ones, as the file means it: negative numbers
+  /// of an `is_unsigned` variable become what their bits say without a sign.
+  [[nodiscard]] double as_meant(double stored) const;
   [[nodiscard]] const Attribute* find(std::string_view attribute) const;
   /// Trimmed text of an attribute; empty when absent or not text.
   [[nodiscard]] std::string text(std::string_view attribute) const;
@@ -44,7 +49,7 @@ struct Variable {
 };
 
 /// One NetCDF file of any format, held in memory: the library never opens a path (it would open it twice), and nobody can
-/// change the bytes while they are read. Only the root group is read.
+/// change the bytes while they are read. Only the root group is read; others are named.
 class NetcdfFile {
  public:
   /// Reads the header. Precondition: check_whole() accepted the bytes, which stay alive.
@@ -56,6 +61,8 @@ class NetcdfFile {
   [[nodiscard]] const std::vector<Dimension>& dimensions() const { return dimensions_; }
   [[nodiscard]] const std::vector<Variable>& variables() const { return variables_; }
   [[nodiscard]] const std::vector<Attribute>& attributes() const { return attributes_; }
+  /// Names of the groups below the root, in the order of the file; empty but in NetCDF-4.
+  [[nodiscard]] const std::vector<std::string>& groups() const { return groups_; }
   [[nodiscard]] const Variable* find(std::string_view name) const;
   /// Text of a global attribute; empty when absent.
   [[nodiscard]] std::string text(std::string_view attribute) const;
@@ -63,7 +70,7 @@ class NetcdfFile {
   /// "u(time, lat, lon)".
   [[nodiscard]] std::string shape_of(const Variable& variable) const;
 
-  /// The stored numbers of a box of a variable as doubles, row-major, neither unpacked nor masked.
+  /// The stored numbers of a box of a variable as doubles, row-major, neither unpacked nor masked, `as_meant`.
   Result<std::vector<double>> read(const Variable& variable, std::span<const std::size_t> start,
                                    std::span<const std::size_t> count) const;
   Result<std::vector<double>> read(const Variable& variable) const;
@@ -71,11 +78,13 @@ class NetcdfFile {
  private:
   explicit NetcdfFile(int id) : id_{id} {}
   Result<Done> read_header();
+  Result<Done> read_groups();
   Result<std::vector<Attribute>> read_attributes(int variable, int count) const;
   int id_{-1};
   std::vector<Dimension> dimensions_;
   std::vector<Variable> variables_;
   std::vector<Attribute> attributes_;
+  std::vector<std::string> groups_;
 };
 
 }  // namespace glidehelm::ingest

@@ -2,181 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
+#include "daemon/ingest/box.hpp"
 #include "daemon/ingest/component.hpp"
+#include "daemon/ingest/geostrophic.hpp"
+#include "daemon/ingest/plausible.hpp"
 #include "daemon/ingest/whole_file.hpp"
 
 namespace glidehelm::ingest {
 
 namespace {
-
-constexpr double kRefusedSpeed = 5.0, kWarnedSpeed = 3.5;
-constexpr double kNodesAtMost = 2e9;  // 16 GB of floats
-
-struct GridAxesInFile {
-  Ascending times, depths, lats, lons;
-  bool has_time{}, has_depth{};
-};
-
-std::string text_of(const char* format, double a, double b) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
-Result<GridAxesInFile> read_axes(const NetcdfFile& file, const Axes& axes, const Units& units,
-                                 const ReadOptions& options, std::vector<std::string>& warnings) {
-  GridAxesInFile out;
-  out.times = out.depths = {{0.0}, {0}};
-  auto lats = latitudes(file, *axes.latitude.coordinate, units, warnings);
-  if (!lats) return unexpected(lats.error());
-  out.lats = std::move(*lats);
-  auto lons = longitudes(file, *axes.longitude.coordinate, units, warnings);
-  if (!lons) return unexpected(lons.error());
-  out.lons = std::move(*lons);
-  if (axes.time) {
-    auto values = times(file, *axes.time->coordinate, units, options.time_epoch, warnings);
-    if (!values) return unexpected(values.error());
-    out.times = std::move(*values);
-    out.has_time = true;
-  } else {
-    warnings.emplace_back("no time axis: taken as the same at every instant");
-  }
-  if (axes.depth) {
-    auto values = depths(file, *axes.depth->coordinate, units, warnings);
-    if (!values) return unexpected(values.error());
-    out.depths = std::move(*values);
-    out.has_depth = true;
-  }
-  if (options.area)
-    if (auto done = cut(out.lats, out.lons, *options.area); !done) return unexpected(done.error());
-  return out;
-}
-
-/// Runs of neighbouring columns: the output's columns [first, last] lie in the file at consecutive indices, up or down.
-struct Run {
-  std::size_t first{}, last{}, source{};  ///< source: the lowest index in the file
-  bool down{};
-};
-std::vector<Run> runs_of(const std::vector<std::size_t>& source) {
-  std::vector<Run> runs;
-  for (std::size_t k = 0; k < source.size(); ++k) {
-    if (!runs.empty()) {
-      Run& run = runs.back();
-      const bool single = run.first == run.last;
-      if (source[k] == source[k - 1] + 1 && (single || !run.down)) {
-        run.last = k;
-        continue;
-      }
-      if (source[k] + 1 == source[k - 1] && (single || run.down)) {
-        run.last = k;
-        run.down = true;
-        run.source = source[k];
-        continue;
-      }
-    }
-    runs.push_back({k, k, source[k], false});
-  }
-  return runs;
-}
-
-/// Reads one component into every second float of `values`, time by time.
-Result<Done> read_component(const NetcdfFile& file, const Variable& variable, const Axes& axes,
-                            const GridAxesInFile& in, const Component& component, float* values) {
-  const std::size_t rank = variable.dimensions.size();
-  const auto [low_lat, high_lat] = std::minmax_element(in.lats.source.begin(), in.lats.source.end());
-  const std::size_t depths = in.depths.values.size(), rows = in.lats.values.size(), columns = in.lons.values.size();
-  std::vector<std::size_t> start(rank, 0), count(rank, 1), stride(rank, 1);
-  for (const auto& run : runs_of(in.lons.source)) {
-    start[*axes.latitude.position] = *low_lat;
-    count[*axes.latitude.position] = *high_lat - *low_lat + 1;
-    start[*axes.longitude.position] = run.source;
-    count[*axes.longitude.position] = run.last - run.first + 1;
-    if (in.has_depth && axes.depth->position) count[*axes.depth->position] = depths;
-    for (std::size_t t = 0; t < in.times.values.size(); ++t) {
-      if (in.has_time && axes.time->position) start[*axes.time->position] = in.times.source[t];
-      const auto stored = file.read(variable, start, count);
-      if (!stored) return unexpected(stored.error());
-      for (std::size_t d = rank, step = 1; d-- > 0; step *= count[d]) stride[d] = step;
-      const std::size_t depth_stride = in.has_depth && axes.depth->position ? stride[*axes.depth->position] : 0;
-      for (std::size_t z = 0; z < depths; ++z)
-        for (std::size_t j = 0; j < rows; ++j)
-          for (std::size_t i = run.first; i <= run.last; ++i) {
-            const std::size_t at = in.depths.source[z] * depth_stride +
-                                   (in.lats.source[j] - *low_lat) * stride[*axes.latitude.position] +
-                                   (in.lons.source[i] - run.source) * stride[*axes.longitude.position];
-            values[2 * (((t * depths + z) * rows + j) * columns + i)] = static_cast<float>(component((*stored)[at]));
-          }
-    }
-  }
-  return Done{};
-}
-
-std::string place_text(const ocean::GridAxes& axes, std::size_t node) {
-  const std::size_t columns = axes.lons_deg.size(), rows = axes.lats_deg.size(), depths = axes.depths_m.size();
-  const std::size_t i = node % columns, j = node / columns % rows, z = node / columns / rows % depths,
-                    t = node / columns / rows / depths;
-  std::string text = text_of("%.4f, %.4f", axes.lats_deg[j], axes.lons_deg[i]);
-  if (axes.has_depth) text += text_of(", %.1f m", axes.depths_m[z], 0);
-  if (axes.has_time) text += ", " + utc_text(instant_at(axes.times_s[t]));
-  return text;
-}
-
-/// Pairs the missing values, leaves out empty times, and refuses what cannot be a sea.
-Result<Done> check_values(ocean::Grid& grid, std::vector<std::string>& warnings) {
-  auto& values = grid.values;
-  auto& axes = grid.axes;
-  const std::size_t plane = axes.nodes() / axes.times_s.size();
-  std::vector<std::size_t> kept;
-  double fastest = 0;
-  std::size_t fastest_node = 0;
-  bool all_zero = true;
-  std::vector<std::string> zero_times;
-  for (std::size_t t = 0; t < axes.times_s.size(); ++t) {
-    bool any = false, zero = true;
-    for (std::size_t n = t * plane; n < (t + 1) * plane; ++n) {
-      float &east = values[2 * n], &north = values[2 * n + 1];
-      if (std::isnan(east) || std::isnan(north)) {
-        east = north = std::numeric_limits<float>::quiet_NaN();
-        continue;
-      }
-      any = true;
-      zero = zero && east == 0 && north == 0;
-      const double speed = std::hypot(static_cast<double>(east), static_cast<double>(north));
-      if (speed > fastest) fastest = speed, fastest_node = n;
-    }
-    if (any) kept.push_back(t);
-    if (any && zero) zero_times.push_back(axes.has_time ? utc_text(instant_at(axes.times_s[t])) : "its only time");
-    all_zero = all_zero && (!any || zero);
-  }
-  if (kept.empty()) return fault("every value is missing");
-  if (all_zero) return fault("every value is exactly zero: no sea is that still, the file was probably never filled");
-  if (!zero_times.empty())
-    return fault("every value at " + zero_times.front() + " is exactly zero (" + std::to_string(zero_times.size()) +
-                 " of " + std::to_string(axes.times_s.size()) + " times): the file is probably still being written");
-  if (fastest > kRefusedSpeed)
-    return fault("a current of " + text_of("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node) +
-                 ", allowed is at most 5 m/s (is the unit right?)");
-  if (fastest > kWarnedSpeed)
-    warnings.push_back("a current of " + text_of("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node));
-  if (kept.size() == axes.times_s.size()) return Done{};
-
-  warnings.push_back(std::to_string(axes.times_s.size() - kept.size()) + " of " + std::to_string(axes.times_s.size()) +
-                     " times have no value at all and are left out");
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    axes.times_s[k] = axes.times_s[kept[k]];
-    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(2 * plane * kept[k]), 2 * plane,
-                values.begin() + static_cast<std::ptrdiff_t>(2 * plane * k));
-  }
-  axes.times_s.resize(kept.size());
-  values.resize(2 * plane * kept.size());
-  return Done{};
-}
 
 /// The forecast's reference time: a variable with that standard_name, else the global attribute `forecast_reference_time`
 /// or `bulletin_date`; NaN when the file names none that can be read.
@@ -198,53 +37,187 @@ std::string base_name(const std::string& path) {
   return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
+/// What reading one file needs all the way.
+struct Reading {
+  const NetcdfFile& file;
+  const Units& units;
+  const ReadOptions& options;
+  Part& part;
+  std::vector<std::string> outside;  ///< "uo 12 (-5 to 5)": values beyond the valid range
+
+  std::vector<std::string>& warnings() const { return part.grid.facts.warnings; }
+};
+
+/// Makes the part's grid as large as the box on these axes.
+Result<Box> prepare(const Reading& reading, const Axes& axes) {
+  auto box = read_box(reading.file, axes, reading.units, reading.options, reading.warnings());
+  if (!box) return box;
+  reading.part.grid.axes = box->axes();
+  reading.part.grid.values.assign(2 * reading.part.grid.axes.nodes(), std::numeric_limits<float>::quiet_NaN());
+  return box;
+}
+
+/// Reads one variable into the part's east (0) or north (1).
+Result<Done> read_into(Reading& reading, const Variable& variable, const std::string& unit, const Axes& axes,
+                       const Box& box, std::size_t side) {
+  const auto component = Component::of(variable, reading.units, unit, reading.warnings());
+  if (!component) return unexpected(component.error());
+  const auto outside =
+      read_values(reading.file, variable, axes, box, *component, reading.part.grid.values.data() + side, 2);
+  if (!outside) return unexpected(outside.error());
+  if (*outside == 0) return Done{};
+  const std::string text = std::to_string(*outside) + " values of " + variable.name + " lie outside its valid range " +
+                           component->valid_text();
+  reading.warnings().push_back(text + " and are kept");
+  reading.outside.push_back(text);
+  return Done{};
+}
+
+void tell_times(Reading& reading, const Axes& axes, const std::string& name) {
+  auto& facts = reading.part.grid.facts;
+  if (axes.time) facts.time_unit = axes.time->coordinate->unit().value_or("");
+  facts.reference_s = reference_time(reading.file, reading.units);
+  facts.cycle = base_name(name);
+  if (!std::isnan(facts.reference_s))
+    facts.cycle += ", cycle " + utc_text(instant_at(facts.reference_s));
+  else if (reading.part.grid.axes.has_time)
+    facts.cycle += ", from " + utc_text(instant_at(reading.part.grid.axes.times_s.front()));
+}
+
+Result<Done> finish(const Reading& reading) {
+  auto done = make_plausible(reading.part.grid, reading.warnings());
+  if (done) return done;
+  std::string what = done.error().what;
+  for (const auto& text : reading.outside)
+    what += "; " + text + ", which is no mask (if they mark land, the file must say so in _FillValue)";
+  return fault(std::move(what));
+}
+
+Result<Done> read_currents(Reading& reading, const VelocityPair& pair, const std::string& name) {
+  const auto axes = recognise_axes(reading.file, *pair.east);
+  if (!axes) return unexpected(axes.error());
+  const auto box = prepare(reading, *axes);
+  if (!box) return unexpected(box.error());
+  for (const auto& [variable, side] : {std::pair{pair.east, std::size_t{0}}, std::pair{pair.north, std::size_t{1}}})
+    if (auto read = read_into(reading, *variable, "m/s", *axes, *box, side); !read) return read;
+  if (auto finished = finish(reading); !finished) return finished;
+  auto& facts = reading.part.grid.facts;
+  facts.east_variable = pair.east->name;
+  facts.north_variable = pair.north->name;
+  facts.east_unit = pair.east->unit().value_or("");
+  facts.north_unit = pair.north->unit().value_or("");
+  facts.recognised_by = pair.why;
+  tell_times(reading, *axes, name);
+  return Done{};
+}
+
+Result<Done> read_half(Reading& reading, const LoneComponent& lone, const std::string& name) {
+  const auto axes = recognise_axes(reading.file, *lone.variable);
+  if (!axes) return unexpected(axes.error());
+  const auto box = prepare(reading, *axes);
+  if (!box) return unexpected(box.error());
+  if (auto read = read_into(reading, *lone.variable, "m/s", *axes, *box, lone.is_east ? 0 : 1); !read) return read;
+  auto& facts = reading.part.grid.facts;
+  (lone.is_east ? facts.east_variable : facts.north_variable) = lone.variable->name;
+  (lone.is_east ? facts.east_unit : facts.north_unit) = lone.variable->unit().value_or("");
+  facts.recognised_by = lone.why;
+  reading.part.holds = lone.is_east ? Holds::east : Holds::north;
+  tell_times(reading, *axes, name);
+  return Done{};
+}
+
+/// The mean that belongs to an anomaly: on the same latitudes and longitudes, the same at every time.
+Result<Done> add_mean(Reading& reading, const Variable& mean) {
+  const auto axes = recognise_axes(reading.file, mean);
+  if (!axes) return unexpected(axes.error());
+  std::vector<std::string> ignored;  // that it has no time is as it should be
+  const auto box = read_box(reading.file, *axes, reading.units, reading.options, ignored);
+  if (!box) return unexpected(box.error());
+  auto& grid = reading.part.grid;
+  if (box->lats.values != grid.axes.lats_deg || box->lons.values != grid.axes.lons_deg ||
+      box->axes().nodes() * grid.axes.times_s.size() != grid.axes.nodes())
+    return fault(reading.file.shape_of(mean) + " lies on other nodes than the heights that it belongs to");
+  const auto component = Component::of(mean, reading.units, "m", reading.warnings());
+  if (!component) return unexpected(component.error());
+  std::vector<float> values(box->axes().nodes());
+  if (auto read = read_values(reading.file, mean, *axes, *box, *component, values.data(), 1); !read)
+    return unexpected(read.error());
+  for (std::size_t n = 0; n < grid.axes.nodes(); ++n) grid.values[2 * n] += values[n % values.size()];
+  return Done{};
+}
+
+Result<Done> read_heights(Reading& reading, const SeaHeights& heights, const std::string& name) {
+  const auto axes = recognise_axes(reading.file, *heights.height);
+  if (!axes) return unexpected(axes.error());
+  const auto box = prepare(reading, *axes);
+  if (!box) return unexpected(box.error());
+  if (auto read = read_into(reading, *heights.height, "m", *axes, *box, 0); !read) return read;
+  if (heights.mean != nullptr)
+    if (auto added = add_mean(reading, *heights.mean); !added) return added;
+  auto& grid = reading.part.grid;
+  for (std::size_t n = 0; n < grid.axes.nodes(); ++n) grid.values[2 * n + 1] = grid.values[2 * n];
+  if (const auto land = zeros_to_land(grid); land > 0)
+    reading.warnings().push_back(std::to_string(land) + " nodes have the height 0 at every time: taken as land");
+  if (const auto left_out = geostrophic_currents(grid, reading.options.equator_band_deg); left_out > 0) {
+    std::string band = std::to_string(reading.options.equator_band_deg);
+    band.erase(band.find_last_not_of('0') + 1);
+    if (band.back() == '.') band.pop_back();
+    reading.warnings().push_back(std::to_string(left_out) + " nodes within " + band +
+                                 " degrees of the equator have no current: heights say nothing of it there");
+  }
+  reading.warnings().emplace_back("computed from heights: without tide and wind drift");
+  if (auto finished = finish(reading); !finished) return finished;
+  auto& facts = grid.facts;
+  facts.east_variable = facts.north_variable = heights.height->name;
+  facts.east_unit = facts.north_unit = heights.height->unit().value_or("");
+  facts.recognised_by = "computed from heights: " + heights.why;
+  tell_times(reading, *axes, name);
+  return Done{};
+}
+
+/// What of a file is read, and how.
+Result<Done> read_somehow(Reading& reading, const std::string& name) {
+  using Heights = ReadOptions::Heights;
+  const auto& options = reading.options;
+  const bool asked_for = !options.east.empty() || !options.north.empty();
+  if (options.heights == Heights::always) {
+    const auto heights = recognise_heights(reading.file);
+    if (!heights) return unexpected(heights.error());
+    if (!*heights) return fault("it has no height of the sea surface; allowed are adt, zos, ssh, or sla with mdt");
+    return read_heights(reading, **heights, name);
+  }
+  const auto pair = recognise_velocity(reading.file, options.east, options.north);
+  if (pair) return read_currents(reading, *pair, name);
+  if (asked_for) return unexpected(pair.error());
+  // A file that has both is refused for what is wrong with them, not read in another way.
+  const auto components = velocity_components(reading.file);
+  const bool one_side = std::all_of(components.begin(), components.end(), [&](const LoneComponent& component) {
+    return component.is_east == components.front().is_east;
+  });
+  if (!components.empty() && one_side) return read_half(reading, components.front(), name);
+  if (!components.empty() || options.heights == Heights::never) return unexpected(pair.error());
+  const auto heights = recognise_heights(reading.file);
+  if (!heights) return unexpected(heights.error());
+  return *heights ? read_heights(reading, **heights, name) : Result<Done>{unexpected(pair.error())};
+}
+
 }  // namespace
+
+Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, const Sha256& hash, const Units& units,
+                            const ReadOptions& options) {
+  Part part{name, {}, Holds::both};
+  Reading reading{file, units, options, part, {}};
+  if (auto read = read_somehow(reading, name); !read) return unexpected(read.error());
+  part.grid.facts.sources = {{name, hash}};
+  return part;
+}
 
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
                        const ReadOptions& options) {
   if (auto whole = check_whole(bytes); !whole) return unexpected(whole.error());
   const auto file = NetcdfFile::open(bytes);
   if (!file) return unexpected(file.error());
-  const auto pair = recognise_velocity(*file, options.east, options.north);
-  if (!pair) return unexpected(pair.error());
-  const auto axes = recognise_axes(*file, *pair->east);
-  if (!axes) return unexpected(axes.error());
-
-  Part part{name, {}};
-  auto& facts = part.grid.facts;
-  auto in = read_axes(*file, *axes, units, options, facts.warnings);
-  if (!in) return unexpected(in.error());
-  part.grid.axes = {in->times.values, in->depths.values, in->lats.values, in->lons.values, in->has_time, in->has_depth};
-  double nodes = 1;  // in floating point, which does not wrap
-  for (const auto* axis : {&in->times, &in->depths, &in->lats, &in->lons})
-    nodes *= static_cast<double>(axis->values.size());
-  if (nodes > kNodesAtMost)
-    return fault("it has " + text_of("%.3g", nodes, 0) + " nodes, allowed is " + text_of("%.3g", kNodesAtMost, 0) +
-                 "; cut it with --area W/E/S/N");
-  part.grid.values.resize(2 * part.grid.axes.nodes());
-  float* values = part.grid.values.data();
-  for (const auto* variable : {pair->east, pair->north}) {
-    const auto component = Component::of(*variable, units, facts.warnings);
-    if (!component) return unexpected(component.error());
-    auto read = read_component(*file, *variable, *axes, *in, *component, values++);
-    if (!read) return unexpected(read.error());
-  }
-  if (auto checked = check_values(part.grid, facts.warnings); !checked) return unexpected(checked.error());
-
-  facts.east_variable = pair->east->name;
-  facts.north_variable = pair->north->name;
-  facts.east_unit = pair->east->unit().value_or("");
-  facts.north_unit = pair->north->unit().value_or("");
-  facts.recognised_by = pair->why;
-  if (axes->time) facts.time_unit = axes->time->coordinate->unit().value_or("");
-  facts.reference_s = reference_time(*file, units);
-  facts.cycle = base_name(name);
-  if (!std::isnan(facts.reference_s))
-    facts.cycle += ", cycle " + utc_text(instant_at(facts.reference_s));
-  else if (in->has_time)
-    facts.cycle += ", from " + utc_text(instant_at(part.grid.axes.times_s.front()));
-  facts.sources = {{name, Sha256::of(bytes)}};
-  return part;
+  return read_open_file(name, *file, Sha256::of(bytes), units, options);
 }
 
 }  // namespace glidehelm::ingest

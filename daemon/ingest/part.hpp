@@ -16,19 +16,37 @@ struct ReadOptions {
   std::string east, north;  ///< empty: recognised
   std::optional<Instant> time_epoch;
   std::optional<Area> area;
+  /// Currents from the height of the sea surface (geostrophic.hpp): where a file has no velocity, always, or never.
+  enum class Heights { when_needed, always, never } heights{Heights::when_needed};
+  /// |latitude| below which heights say nothing. 5° by default, as the errata of Thesis A.1–A.2 ask: there a slope of 1 cm
+  /// in 100 km already stands for 0.08 m/s, and ever more towards the equator.
+  double equator_band_deg{5};
 };
+
+/// Which components of the current a part has numbers for.
+enum class Holds { both, east, north };
 
 /// One file as a grid, with its name and what was noticed.
 struct Part {
   std::string file;
   ocean::Grid grid;  ///< facts.warnings without the file's name
+  Holds holds{Holds::both};
 };
 
 /// Reads the currents of one file: east and north in m/s, NaN where either is missing, axes ascending. Refused, with the
 /// place: files that are not whole, variables or axes that are not recognised (recognise.hpp), units that cannot be read,
-/// a field without any value, with nothing but zeros, with a time of nothing but zeros (a file still being written), or
-/// faster than 5 m/s, or of more than 2e9 nodes. A time without any value is left out with a warning; speeds above 3.5 m/s are warned about.
+/// a field of more than 2e9 nodes, and what no sea can be (plausible.hpp). A file with one component only becomes half a
+/// part; a file without velocity but with heights of the sea surface becomes the geostrophic current, and its facts say
+/// "computed from heights".
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
                        const ReadOptions& options);
+
+/// The same of a file that is open, with its hash.
+Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, const Sha256& hash, const Units& units,
+                            const ReadOptions& options);
+
+/// Makes whole parts of halves: the east of one file and the north of another that lie on the same axes and times. What
+/// was whole stays; a half without its other is refused.
+Result<std::vector<Part>> pair_halves(std::vector<Part> parts);
 
 }  // namespace glidehelm::ingest

@@ -6,14 +6,32 @@
 #include <utility>
 
 #include "core/base/text.hpp"
+#include "daemon/ingest/units.hpp"
 
 namespace glidehelm::ingest {
 
 namespace {
 
 constexpr std::string_view kEastName = "eastward_sea_water_velocity", kNorthName = "northward_sea_water_velocity";
-constexpr std::array<std::pair<std::string_view, std::string_view>, 4> kKnownNames{
-    {{"water_u", "water_v"}, {"uo", "vo"}, {"ugos", "vgos"}, {"u", "v"}}};
+/// Winds have other names (u10, UGRD, uas), and are not here.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kKnownNames{
+    {{"water_u", "water_v"},
+     {"uo", "vo"},
+     {"ugos", "vgos"},
+     {"u", "v"},
+     {"utotal", "vtotal"},
+     {"ucur", "vcur"},
+     {"uvel", "vvel"},
+     {"u_velocity", "v_velocity"},
+     {"u_current", "v_current"},
+     {"current_u", "current_v"},
+     {"ssu", "ssv"},
+     {"uogrd", "vogrd"},
+     {"ewct", "nsct"},
+     {"vozocrtx", "vomecrty"},
+     {"u_barotropic_velocity", "v_barotropic_velocity"},
+     {"ubar", "vbar"}}};
+constexpr std::array<std::string_view, 5> kHeightNames{"adt", "zos", "ssh", "surf_el", "sossheig"};
 
 bool ends_with(std::string_view text, std::string_view end) {
   return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
@@ -43,6 +61,43 @@ const Variable* curvilinear_latitude(const NetcdfFile& file) {
 std::string curvilinear_text(const NetcdfFile& file, const Variable& latitude) {
   return "curvilinear grid: " + file.shape_of(latitude) +
          " is two-dimensional; allowed is a rectilinear grid, latitude and longitude each on an axis of its own";
+}
+
+/// The variable of a name, exact before any case.
+const Variable* named(const NetcdfFile& file, std::string_view name) {
+  if (const auto* exact = file.find(name)) return exact;
+  for (const auto& variable : file.variables())
+    if (equal_without_case(variable.name, name)) return &variable;
+  return nullptr;
+}
+
+/// What a file without currents in time is, where that can be seen: for a person who pointed at the wrong one.
+std::optional<std::string> known_for_something_else(const NetcdfFile& file) {
+  const auto any = [&](std::initializer_list<std::string_view> names) {
+    const Variable* found = nullptr;
+    for (const auto name : names)
+      if (found == nullptr) found = named(file, name);
+    return found;
+  };
+  const auto* tides = any({"tide_Cmax", "tide_Cphase", "tide_Ephase", "major_axis", "uamp", "ua", "u_amp", "uRe"});
+  const auto* constituents = any({"tide_period", "cons", "constituents", "con", "constituent", "tide_name"});
+  if (tides != nullptr && constituents != nullptr)
+    return "tidal constituents: " + file.shape_of(*tides) +
+           " describes the tide by its constituents, not the current at any time; allowed are currents in time, such "
+           "as "
+           "a tide model predicts from them";
+  for (const auto& variable : file.variables())
+    if (variable.text("cf_role") == "mesh_topology")
+      return "unstructured grid: " + variable.name + " describes a mesh; allowed is a rectilinear grid, latitude and " +
+             "longitude each on an axis of its own";
+  return std::nullopt;
+}
+
+std::string groups_text(const NetcdfFile& file) {
+  if (file.groups().empty()) return "";
+  std::string names;
+  for (const auto& group : file.groups()) names += (names.empty() ? "" : ", ") + group;
+  return " (its groups are not read: " + names + ")";
 }
 
 std::string existing(const NetcdfFile& file) {
@@ -100,9 +155,9 @@ std::optional<VelocityPair> by_prefix(const NetcdfFile& file) {
 
 std::optional<VelocityPair> by_known_name(const NetcdfFile& file) {
   for (const auto& [east_name, north_name] : kKnownNames) {
-    const auto *east = file.find(east_name), *north = file.find(north_name);
+    const auto *east = named(file, east_name), *north = named(file, north_name);
     if (east != nullptr && north != nullptr && could_be_velocity(*east) && could_be_velocity(*north))
-      return VelocityPair{east, north, "name " + std::string{east_name}};
+      return VelocityPair{east, north, "name " + east->name};
   }
   return by_prefix(file);
 }
@@ -121,19 +176,62 @@ Result<VelocityPair> recognise_velocity(const NetcdfFile& file, const std::strin
     if (easts.size() == 1 && norths.size() == 1)
       return checked(file, {easts[0], norths[0], "standard_name " + easts[0]->text("standard_name")});
     for (const auto& [east_name, north_name] : kKnownNames)
-      if (contains(easts, file.find(east_name)) && contains(norths, file.find(north_name)))
-        return checked(file, {file.find(east_name), file.find(north_name),
-                              "standard_name " + file.find(east_name)->text("standard_name") + ", of several by name"});
+      if (contains(easts, named(file, east_name)) && contains(norths, named(file, north_name)))
+        return checked(file,
+                       {named(file, east_name), named(file, north_name),
+                        "standard_name " + named(file, east_name)->text("standard_name") + ", of several by name"});
     std::string names;
     for (const auto* variable : easts) names += (names.empty() ? "" : ", ") + variable->name;
     return fault("several eastward velocities (" + names + "); say which with --variables EAST,NORTH");
   }
   if (auto pair = by_known_name(file)) return checked(file, std::move(*pair));
+  if (const auto known = known_for_something_else(file)) return fault(*known);
   if (const auto* latitude = curvilinear_latitude(file))
     return fault(curvilinear_text(file, *latitude) + " (and no east and north velocity is recognised; it has " +
                  existing(file) + ")");
-  return fault("no east and north velocity is recognised; it has " + existing(file) +
+  return fault("no east and north velocity is recognised; it has " + existing(file) + groups_text(file) +
                "; say which with --variables EAST,NORTH");
+}
+
+std::vector<LoneComponent> velocity_components(const NetcdfFile& file) {
+  std::vector<LoneComponent> found;
+  const auto consider = [&](const Variable* variable, bool is_east, const std::string& why) {
+    if (variable != nullptr && could_be_velocity(*variable)) found.push_back({variable, is_east, why});
+  };
+  for (const bool is_east : {true, false})
+    for (const auto* variable : by_standard_name(file, is_east ? kEastName : kNorthName))
+      consider(variable, is_east, "standard_name " + variable->text("standard_name"));
+  if (!found.empty()) return found;
+  for (const auto& [east_name, north_name] : kKnownNames) {
+    consider(named(file, east_name), true, "name " + std::string{east_name});
+    consider(named(file, north_name), false, "name " + std::string{north_name});
+  }
+  for (const auto& variable : file.variables()) {
+    if (begins_with(variable.name, "eastward_")) consider(&variable, true, "name " + variable.name);
+    if (begins_with(variable.name, "northward_")) consider(&variable, false, "name " + variable.name);
+  }
+  return found;
+}
+
+Result<std::optional<SeaHeights>> recognise_heights(const NetcdfFile& file) {
+  const auto is_height = [](const Variable* variable) {
+    return variable != nullptr && could_be_velocity(*variable) && lower(variable->name) != "mdt";
+  };
+  for (const auto& variable : file.variables())
+    if (is_height(&variable) && lower(variable.text("standard_name")) == "sea_surface_height_above_geoid")
+      return std::optional{
+          SeaHeights{&variable, nullptr, variable.name + ", standard_name " + variable.text("standard_name")}};
+  for (const auto name : kHeightNames)
+    if (const auto* variable = named(file, name); is_height(variable))
+      return std::optional{SeaHeights{variable, nullptr, variable->name + ", by name"}};
+  const auto *anomaly = named(file, "sla"), *mean = named(file, "mdt");
+  if (!is_height(anomaly)) return std::optional<SeaHeights>{};
+  if (mean == nullptr || !could_be_velocity(*mean))
+    return fault(
+        file.shape_of(*anomaly) +
+        " is the height above the mean sea surface: its slope lacks the mean current; allowed are adt, zos, or "
+        "sla together with mdt");
+  return std::optional{SeaHeights{anomaly, mean, anomaly->name + " + " + mean->name + ", by name"}};
 }
 
 Role role_of(const Variable& variable) {
@@ -149,7 +247,7 @@ Role role_of(const Variable& variable) {
     return Role::latitude;
   if (one_of(unit, {"degrees_east", "degree_east", "degrees_e", "degree_e", "degreese", "degreee"}))
     return Role::longitude;
-  if (unit.find(" since ") != std::string::npos) return Role::time;
+  if (names_epoch(unit)) return Role::time;
   if (!variable.text("positive").empty()) return Role::depth;
   const std::string axis = variable.text("axis");
   if (axis == "T") return Role::time;
@@ -228,6 +326,8 @@ Result<Axes> recognise_axes(const NetcdfFile& file, const Variable& velocity) {
     if (const auto* latitude = curvilinear_latitude(file)) return fault(curvilinear_text(file, *latitude));
     if (!unknown) return fault(file.shape_of(velocity) + " has no latitude or no longitude axis; it needs both");
   }
+  if (unknown)
+    if (const auto known = known_for_something_else(file)) return fault(*known);
   if (unknown) return fault(*unknown + " is neither time, depth, latitude nor longitude");
   if (!axes.time)
     if (const auto* scalar = scalar_with(file, velocity, Role::time, "time")) axes.time = AxisOf{std::nullopt, scalar};

@@ -122,7 +122,7 @@ data:
                    [](float a, float b) { return a == b || (std::isnan(a) && std::isnan(b)); }));
 }
 
-TEST_CASE("packed values, several missing markers, valid ranges and other units come out in m/s") {
+TEST_CASE("packed values, several missing markers and other units come out in m/s, whatever the valid range") {
   const test::ScratchFolder folder;
   const auto result = run_ingest(folder, test::make_netcdf(folder, "p.nc", R"(netcdf p {
 dimensions: latitude = 2 ; longitude = 4 ;
@@ -142,13 +142,18 @@ data:
   CHECK(result.at(0, 0, 0, 0, 0) == Approx(0.2F));
   CHECK(result.at(0, 0, 0, 1, 0) == Approx(0.0F).margin(1e-9));
   CHECK(result.at(0, 0, 0, 0, 1) == Approx(1852.0 / 3600).epsilon(1e-7));
-  for (const auto& [j, i] :
-       {std::pair{0, 2}, std::pair{0, 3}, std::pair{1, 0}, std::pair{1, 1}, std::pair{1, 2}, std::pair{1, 3}})
+  for (const auto& [j, i] : {std::pair{0, 2}, std::pair{0, 3}, std::pair{1, 1}, std::pair{1, 2}})
     CHECK(std::isnan(result.at(0, 0, static_cast<std::size_t>(j), static_cast<std::size_t>(i), 0)));
   CHECK_FALSE(result.view->axes.has_time);
   CHECK(result.view->facts.recognised_by == "standard_name eastward_sea_water_velocity");
   CHECK(result.view->facts.warnings ==
-        std::vector<std::string>{"p.nc: no time axis: taken as the same at every instant"});
+        std::vector<std::string>{"p.nc: no time axis: taken as the same at every instant",
+                                 "p.nc: 1 values of east lie outside its valid range any to 900 and are kept",
+                                 "p.nc: 1 values of north lie outside its valid range -8 to 8 and are kept",
+                                 "p.nc: a current of 4.63 m/s at 2.0000, 4.0000"});
+  // 0.1·901 + 10 = 100.1 cm/s, and 9 kn.
+  CHECK(result.at(0, 0, 1, 0, 0) == Approx(1.001F));
+  CHECK(result.at(0, 0, 1, 3, 1) == Approx(9 * 1852.0 / 3600).epsilon(1e-7));
 }
 
 TEST_CASE("depths turn positive down whatever the file says, and a scalar time counts") {
@@ -209,8 +214,9 @@ TEST_CASE("a time axis without an epoch needs one from outside") {
   CHECK(none.view->axes.times_s[0] == epoch_seconds(*utc_from_text("2024-01-01T00:00:06Z")));
   CHECK(none.view->facts.warnings ==
         std::vector<std::string>{"n.nc: axis time has no unit; taken as seconds since the given epoch"});
-  CHECK(refusal(replaced(kPlain, R"(since 2024-01-01")", R"(since 2024-01-01" ; time:calendar = "noleap")")) ==
-        "axis time: the calendar \"noleap\"; allowed are standard, gregorian and proleptic_gregorian\n");
+  CHECK(refusal(replaced(kPlain, R"(since 2024-01-01")", R"(since 2024-01-01" ; time:calendar = "360_day")")) ==
+        "axis time: the calendar \"360_day\" has days that never were; allowed are standard, gregorian, "
+        "proleptic_gregorian, julian, noleap and 365_day\n");
 }
 
 TEST_CASE("variables are found in the order that is promised") {

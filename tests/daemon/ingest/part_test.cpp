@@ -73,9 +73,10 @@ TEST_CASE("real data: every other sample is refused for its reason") {
       {"roms_us_east_sandy/Sandy_roms_grid.nc", "curvilinear grid: lat_rho(eta_rho, xi_rho)"},
       {"roms_wcofs_oregon/WCOFS_subset.nc", "curvilinear grid: lat_psi(eta_psi, xi_psi)"},
       {"tides/tide_forc_Sandy.nc",
-       "no east and north velocity is recognised; it has tide_Ephase(tide_period, erho, xrho)"},
+       "tidal constituents: tide_Cmax(tide_period, erho, xrho) describes the tide by its constituents, not the "
+       "current"},
       {"tides/tidepredictor_currents.nc",
-       "no east and north velocity is recognised; it has major_axis(cons, lon, lat)"},
+       "tidal constituents: major_axis(cons, lon, lat) describes the tide by its constituents, not the current"},
       {"unstructured/test_creofs_selfe.nc", "unstructured grid: lat(node) and lon(node)"},
       {"tides/ACT1951_1_Annual_2021.csv", "not a NetCDF file"},
       {"json/water-gbr.json", "not a NetCDF file"}};

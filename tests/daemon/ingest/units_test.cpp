@@ -1,6 +1,7 @@
 #include "daemon/ingest/units.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "core/base/utc.hpp"
 
@@ -76,9 +77,82 @@ TEST_CASE("the Gregorian calendars agree after 1582 and differ before, as CF say
 }
 
 TEST_CASE("other calendars and unreadable time units are refused by name") {
-  CHECK(units().time_scaling("days since 1950-01-01", "360_day").error().what ==
-        "the calendar \"360_day\"; allowed are standard, gregorian and proleptic_gregorian");
-  CHECK_FALSE(units().time_scaling("days since 1950-01-01", "noleap"));
+  const std::string allowed = "; allowed are standard, gregorian, proleptic_gregorian, julian, noleap and 365_day";
+  for (const char* calendar : {"360_day", "all_leap", "366_day"})
+    CHECK(units().time_scaling("days since 1950-01-01", calendar).error().what ==
+          "the calendar \"" + std::string{calendar} + "\" has days that never were" + allowed);
+  for (const char* calendar : {"utc", "TAI"})
+    CHECK(units().time_scaling("days since 1950-01-01", calendar).error().what ==
+          "the calendar \"" + std::string{calendar} + "\" counts leap seconds" + allowed);
+  CHECK(units().time_scaling("days since 1950-01-01", "lunar").error().what == "the calendar \"lunar\"" + allowed);
   CHECK_FALSE(units().time_scaling("days since yesterday", ""));
   CHECK_FALSE(units().time_scaling("m since 1950-01-01", ""));
+}
+
+TEST_CASE("malformed speeds are read as what they mean") {
+  for (const char* unit : {"mps", "ms-1", "M/S", "Meters/Second"}) CHECK(speed(unit) == 1);
+  CHECK(speed("CM/S") == Approx(0.01).epsilon(1e-15));
+}
+
+TEST_CASE("malformed time units are read as what they mean") {
+  const double six = utc("2020-01-15T06:00:00Z");
+  for (const char* unit : {"hrs since 2020/01/15", "Hours Since 2020-1-15", "HOURS SINCE 2020-01-15 00:00:00 UTC",
+                           "h since 20200115", "hours since 2020-01-15_00:00:00", "hours after 2020-01-15",
+                           "hours from 2020-01-15T00:00:00Z", "hours ref 2020-01-15 0:0:0.0", "hours @ 2020-01-15",
+                           "hours since 2020-01-15 00:00:00 +0000", "hours  since  2020-01-15"})
+    CHECK(seconds(unit, 6) == six);
+  CHECK(seconds("hours since 2020-01-15 00:00:00 -6:00", 0) == six);
+  CHECK(seconds("seconds since 2020-01-15T06", 0) == six);
+  CHECK(seconds("fortnights since 2020-01-01", 1) == utc("2020-01-15"));
+  CHECK(seconds("msec since 2020-01-15", 21.6e6) == six);
+}
+
+TEST_CASE("times that are written as dates or as Julian days are read") {
+  CHECK(seconds("day as %Y%m%d.%f", 20200115.25) == utc("2020-01-15T06:00:00Z"));
+  CHECK(std::isnan(seconds("day as %Y%m%d.%f", 20200231)));
+  CHECK(std::isnan(seconds("day as %Y%m%d.%f", 115)));
+  // 2000-01-01 00:00 is modified Julian day 51544 and Julian day 2451544.5.
+  CHECK(seconds("modified Julian day", 51544) == utc("2000-01-01"));
+  CHECK(seconds("Julian day", 2451544.5) == utc("2000-01-01"));
+  CHECK(names_epoch("modified Julian day"));
+  CHECK(names_epoch("days since 2000-01-01"));
+  CHECK_FALSE(names_epoch("days"));
+  CHECK(counts_in_months("months since 2000-01-01"));
+  CHECK_FALSE(counts_in_months("days since 2000-01-01"));
+}
+
+TEST_CASE("a calendar without leap days names real dates, and Julian dates are real days") {
+  // 365 days after 1 January are 1 January again; day 59 is 1 March in every year.
+  CHECK(seconds("days since 2020-01-01", 59, "noleap") == utc("2020-03-01"));
+  CHECK(seconds("days since 2020-01-01", 365, "365_day") == utc("2021-01-01"));
+  CHECK(seconds("days since 2000-01-01", 365 * 24 + 30.5, "noleap") == utc("2024-01-31T12:00:00Z"));
+  CHECK(seconds("days since 1950-01-01", 365 * 74 + 58, "noleap") == utc("2024-02-28"));
+  CHECK(seconds("hours since 1980-03-01 06:00", -6, "noleap") == utc("1980-03-01"));
+  CHECK(seconds("days since 1980-03-01", -1, "noleap") == utc("1980-02-28"));
+  CHECK(seconds("days since 1969-12-31", 0, "noleap") == utc("1969-12-31"));
+  // 1 January 2024 of the Julian calendar is 14 January; 29 February 1900 exists only there and is 13 March.
+  CHECK(seconds("days since 2024-01-01", 0, "julian") == utc("2024-01-14"));
+  CHECK(seconds("days since 1900-02-29", 0, "julian") == utc("1900-03-13"));
+  CHECK_FALSE(units().time_scaling("days since 1900-02-29", "standard"));
+}
+
+TEST_CASE("epochs that UDUNITS reads as something else are refused") {
+  const auto why = [](const std::string& unit, const std::string& calendar = "") {
+    const auto scaling = units().time_scaling(unit, calendar);
+    REQUIRE_FALSE(scaling);
+    return scaling.error().what;
+  };
+  const std::string allowed = "; allowed is like \"hours since 1950-01-01 00:00:00\"";
+  for (const char* date : {"1-1-1970", "15-01-2020", "01/15/2020", "2020-13-01", "2020-02-30", "2020-00-10"}) {
+    const std::string unit = "days since " + std::string{date};
+    INFO(unit);
+    const auto said = why(unit);
+    CHECK((said == "the time unit \"" + unit + "\" cannot be read" + allowed ||
+           said == "the time unit \"" + unit + "\" counts from a date that does not exist" + allowed));
+  }
+  CHECK(why("days since 0000-01-01") ==
+        "the time unit \"days since 0000-01-01\" counts from the year 0, which its calendar does not have" + allowed);
+  // The proleptic calendar has that year: 719528 days before 1970, by 400-year cycles of 146097 days.
+  CHECK(seconds("days since 0000-01-01", 719528, "proleptic_gregorian") == Approx(0).margin(1e-3));
+  CHECK_FALSE(units().time_scaling("hours since 2020-01-15 25:00:00", ""));
 }

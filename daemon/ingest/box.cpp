@@ -1,0 +1,117 @@
+#include "daemon/ingest/box.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+namespace glidehelm::ingest {
+
+namespace {
+
+constexpr double kNodesAtMost = 2e9;  // 16 GB of floats
+
+std::string text_of(double value) {
+  char buffer[40];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  return buffer;
+}
+
+/// Runs of neighbouring columns: the output's columns [first, last] lie in the file at consecutive indices, up or down.
+struct Run {
+  std::size_t first{}, last{}, source{};  ///< source: the lowest index in the file
+  bool down{};
+};
+std::vector<Run> runs_of(const std::vector<std::size_t>& source) {
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < source.size(); ++k) {
+    if (!runs.empty()) {
+      Run& run = runs.back();
+      const bool single = run.first == run.last;
+      if (source[k] == source[k - 1] + 1 && (single || !run.down)) {
+        run.last = k;
+        continue;
+      }
+      if (source[k] + 1 == source[k - 1] && (single || run.down)) {
+        run.last = k;
+        run.down = true;
+        run.source = source[k];
+        continue;
+      }
+    }
+    runs.push_back({k, k, source[k], false});
+  }
+  return runs;
+}
+
+}  // namespace
+
+Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& units, const ReadOptions& options,
+                     std::vector<std::string>& warnings) {
+  Box out;
+  out.times = out.depths = {{0.0}, {0}};
+  auto lats = latitudes(file, *axes.latitude.coordinate, units, warnings);
+  if (!lats) return unexpected(lats.error());
+  out.lats = std::move(*lats);
+  auto lons = longitudes(file, *axes.longitude.coordinate, units, warnings);
+  if (!lons) return unexpected(lons.error());
+  out.lons = std::move(*lons);
+  if (axes.time) {
+    auto values = times(file, *axes.time->coordinate, units, options.time_epoch, warnings);
+    if (!values) return unexpected(values.error());
+    out.times = std::move(*values);
+    out.has_time = true;
+  } else {
+    warnings.emplace_back("no time axis: taken as the same at every instant");
+  }
+  if (axes.depth) {
+    auto values = depths(file, *axes.depth->coordinate, units, warnings);
+    if (!values) return unexpected(values.error());
+    out.depths = std::move(*values);
+    out.has_depth = true;
+  }
+  if (options.area)
+    if (auto done = cut(out.lats, out.lons, *options.area); !done) return unexpected(done.error());
+  double nodes = 1;  // in floating point, which does not wrap
+  for (const auto* axis : {&out.times, &out.depths, &out.lats, &out.lons})
+    nodes *= static_cast<double>(axis->values.size());
+  if (nodes > kNodesAtMost)
+    return fault("it has " + text_of(nodes) + " nodes, allowed is " + text_of(kNodesAtMost) +
+                 "; cut it with --area W/E/S/N");
+  return out;
+}
+
+Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& in,
+                                const Component& component, float* values, std::size_t step_of_values) {
+  std::size_t outside = 0;
+  const std::size_t rank = variable.dimensions.size();
+  const auto [low_lat, high_lat] = std::minmax_element(in.lats.source.begin(), in.lats.source.end());
+  const std::size_t depths = in.depths.values.size(), rows = in.lats.values.size(), columns = in.lons.values.size();
+  std::vector<std::size_t> start(rank, 0), count(rank, 1), stride(rank, 1);
+  for (const auto& run : runs_of(in.lons.source)) {
+    start[*axes.latitude.position] = *low_lat;
+    count[*axes.latitude.position] = *high_lat - *low_lat + 1;
+    start[*axes.longitude.position] = run.source;
+    count[*axes.longitude.position] = run.last - run.first + 1;
+    if (in.has_depth && axes.depth->position) count[*axes.depth->position] = depths;
+    for (std::size_t t = 0; t < in.times.values.size(); ++t) {
+      if (in.has_time && axes.time->position) start[*axes.time->position] = in.times.source[t];
+      const auto stored = file.read(variable, start, count);
+      if (!stored) return unexpected(stored.error());
+      for (std::size_t d = rank, step = 1; d-- > 0; step *= count[d]) stride[d] = step;
+      const std::size_t depth_stride = in.has_depth && axes.depth->position ? stride[*axes.depth->position] : 0;
+      for (std::size_t z = 0; z < depths; ++z)
+        for (std::size_t j = 0; j < rows; ++j)
+          for (std::size_t i = run.first; i <= run.last; ++i) {
+            const std::size_t at = in.depths.source[z] * depth_stride +
+                                   (in.lats.source[j] - *low_lat) * stride[*axes.latitude.position] +
+                                   (in.lons.source[i] - run.source) * stride[*axes.longitude.position];
+            const double value = component((*stored)[at]);
+            if (value == value && component.outside_valid((*stored)[at])) ++outside;
+            values[step_of_values * (((t * depths + z) * rows + j) * columns + i)] = static_cast<float>(value);
+          }
+    }
+  }
+  return outside;
+}
+
+}  // namespace glidehelm::ingest

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/ocean/grid_format.hpp"
+#include "daemon/ingest/component.hpp"
+#include "daemon/ingest/part.hpp"
+#include "daemon/ingest/recognise.hpp"
+
+/// The part of a file that is read: its axes in the grid's order, and any variable over them.
+namespace glidehelm::ingest {
+
+/// Axes ascending, with the way back to the file; without a time (depth) axis one value that means nothing.
+struct Box {
+  Ascending times, depths, lats, lons;
+  bool has_time{}, has_depth{};
+  [[nodiscard]] ocean::GridAxes axes() const {
+    return {times.values, depths.values, lats.values, lons.values, has_time, has_depth};
+  }
+};
+
+/// Reads the axes, and cuts them to the area that was asked for. Refused: more than 2e9 nodes.
+Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& units, const ReadOptions& options,
+                     std::vector<std::string>& warnings);
+
+/// Reads a variable on `axes` over the box into `values[0]`, `values[step]`, `values[2·step]`, …, ordered [time][depth]
+/// [latitude][longitude], in the unit of `component`. Returns how many values lie outside the valid range (they are kept).
+Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& box,
+                                const Component& component, float* values, std::size_t step);
+
+}  // namespace glidehelm::ingest

@@ -6,6 +6,7 @@
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 #include "daemon/ingest/join.hpp"
+#include "daemon/ingest/opendap.hpp"
 #include "daemon/world/real_files.hpp"
 #include "daemon/world/real_rng.hpp"
 
@@ -20,7 +21,7 @@ constexpr std::size_t kFileAtMost = std::size_t{8} << 30;
 
 struct Arguments {
   std::vector<std::string> files;
-  std::string output, variables, epoch, area, heights, equator_band;
+  std::string output, variables, epoch, area, heights, equator_band, fill_gaps;
 };
 
 int refuse(const std::string& what) {
@@ -67,6 +68,11 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
     if (!degrees || *degrees < 0 || *degrees > 90)
       return "--equator-band " + arguments.equator_band + ": allowed is 0 to 90 degrees";
     options.equator_band_deg = *degrees;
+  }
+  if (!arguments.fill_gaps.empty()) {
+    const auto km = number_from(arguments.fill_gaps);
+    if (!km || *km < 0 || *km > 500) return "--fill-gaps " + arguments.fill_gaps + ": allowed is 0 to 500 km";
+    options.fill_gaps_m = *km * 1000;
   }
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
@@ -127,6 +133,12 @@ int run(const Arguments& arguments) {
 
   std::vector<Part> parts;
   for (const auto& name : arguments.files) {
+    if (is_address(name)) {
+      auto part = read_address(name, *units, options);
+      if (!part) return refuse(name + ": " + part.error().what);
+      parts.push_back(std::move(*part));
+      continue;
+    }
     const auto bytes = read_whole(files, name);
     if (!bytes) return refuse(name + ": " + bytes.error());
     auto part = read_part(name, std::as_bytes(std::span{bytes->data(), bytes->size()}), *units, options);
@@ -159,6 +171,8 @@ int main(int argc, char** argv) {
   app.add_option("--heights", arguments.heights,
                  "currents from the height of the sea surface: auto (where there is no velocity), always, never");
   app.add_option("--equator-band", arguments.equator_band, "degrees of latitude within which heights say nothing");
+  app.add_option("--fill-gaps", arguments.fill_gaps,
+                 "km within which gaps of surface currents are filled (default: two cells of HF radar files)");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);

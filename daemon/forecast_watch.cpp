@@ -2,10 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "core/base/utc.hpp"
+
 namespace glidehelm::daemon {
 
-ForecastWatch::ForecastWatch(world::World world, std::string grids, Handlers handlers)
-    : world_{world}, grids_{std::move(grids)}, handlers_{std::move(handlers)}, alive_{std::make_shared<bool>(true)} {}
+namespace {
+
+constexpr Seconds kSettle{10};     // how long a published file must have been left alone
+constexpr Seconds kTryAgain{600};  // after a reason that passes
+constexpr double kExpired_s = 72 * 3600.0, kFuture_s = 24 * 3600.0;
+
+/// A child cannot wait on a clock that stands still: in a simulated world files are complete when they are there.
+Seconds settle_of(const world::Clock& clock) { return clock.simulated() ? Seconds{0} : kSettle; }
+
+/// Whether `a` is a later forecast than `b`: by reference time when both name one, else by its end.
+bool later(const OceanSource& a, const OceanSource& b) {
+  const auto &x = a.forecast.facts(), &y = b.forecast.facts();
+  if (std::isfinite(x.reference_s) && std::isfinite(y.reference_s) && x.reference_s != y.reference_s)
+    return x.reference_s > y.reference_s;
+  return x.last_s > y.last_s;
+}
+
+}  // namespace
+
+ForecastWatch::ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache)
+    : world_{world},
+      grids_{std::move(grids)},
+      handlers_{std::move(handlers)},
+      cache_{std::move(cache)},
+      alive_{std::make_shared<bool>(true)} {}
 
 ForecastWatch::~ForecastWatch() { *alive_ = false; }
 
@@ -20,17 +47,21 @@ void ForecastWatch::follow(const mission::Mission& mission) {
   if (same && (current_ || loading_)) return;
   current_.reset();
   seen_.clear();
+  said_.clear();
+  try_again_.reset();
   ++generation_;
   look();
 }
 
-/// Names, sizes and times of the files: enough to see that something new is there.
+/// Names and looks of the files: enough to see that something new is there.
 std::string ForecastWatch::fingerprint() const {
   std::string text = "formula";
   for (const auto& pattern : mission_->currents.files)
     for (const auto& path : world_.files.glob(pattern)) {
       const auto stat = world_.files.stat(path);
-      text += fmt::format("\n{} {} {}", path, stat ? stat->size : 0, stat ? stat->modified_ns : 0);
+      const auto identity = stat ? FileIdentity::of(*stat) : FileIdentity{};
+      text += fmt::format("\n{} {} {} {} {}", path, identity.inode, identity.size, identity.modified_ns,
+                          identity.changed_ns);
     }
   return text;
 }
@@ -42,32 +73,106 @@ void ForecastWatch::look() {
     return;
   }
   auto seen = fingerprint();
-  if (seen != seen_) load(std::move(seen));
+  const bool due = try_again_ && world_.clock.tick() >= *try_again_;
+  if (seen != seen_ || due) load(std::move(seen));
+}
+
+OceanOrder ForecastWatch::order() const {
+  return {*mission_,       grids_, !mission_->coast_file.empty(), mission_->start_time.value_or(world_.clock.utc()),
+          mission_->start, cache_, settle_of(world_.clock)};
 }
 
 void ForecastWatch::load(std::string seen) {
   loading_ = true;
   again_ = false;
+  try_again_.reset();
+  if (seen != seen_) said_.clear();
   seen_ = std::move(seen);
-  const OceanOrder order{*mission_, grids_, !mission_->coast_file.empty(),
-                         mission_->start_time.value_or(world_.clock.utc()), mission_->start};
-  load_ocean_async(order, world_, [this, alive = alive_, generation = generation_](OceanResult result) {
+  if (!cache_ && !mission_->currents.files.empty()) {
+    auto cache = GridCache::open(world_.files, grids_);
+    if (cache)
+      cache_ = std::move(*cache);
+    else if (handlers_.noted)
+      handlers_.noted("forecasts are not kept: " + cache.error());
+  }
+  const auto asked = order();
+  load_ocean_async(asked, world_, [this, asked, alive = alive_, generation = generation_](OceanOutcome outcome) {
     if (!*alive) return;
     loading_ = false;
-    if (generation == generation_) {
-      if (result) {
-        current_ = std::move(result).value();
-        problem_.clear();
-      } else {
-        problem_ = result.error();
-      }
-      if (problem_.empty())
-        handlers_.loaded(current_);
-      else
-        handlers_.refused(problem_);
-    }
+    if (generation == generation_) loaded(asked, std::move(outcome));
     if (again_ || generation != generation_) look();
   });
+}
+
+/// A forecast of another time than ours, or nothing when it is one to use.
+std::optional<IngestFault> ForecastWatch::untimely(const OceanSource& ocean) const {
+  const auto& facts = ocean.forecast.facts();
+  if (!facts.has_time || mission_->currents.outside_time == ocean::OutsideTime::cycle) return std::nullopt;
+  const double now = epoch_seconds(world_.clock.utc());
+  const auto at = [](double seconds) { return utc_text(instant_at(seconds)); };
+  if (now > facts.last_s + kExpired_s)
+    return IngestFault{fmt::format("{} has expired: its last field is of {}, {:.1f} h ago; allowed are {:.0f} h",
+                                   ocean.label(), at(facts.last_s), (now - facts.last_s) / 3600, kExpired_s / 3600),
+                       true};
+  if (now < facts.first_s - kFuture_s)
+    return IngestFault{fmt::format("{} lies in the future: its first field is of {}, in {:.1f} h; allowed are {:.0f} h",
+                                   ocean.label(), at(facts.first_s), (facts.first_s - now) / 3600, kFuture_s / 3600),
+                       true};
+  return std::nullopt;
+}
+
+void ForecastWatch::loaded(const OceanOrder& order, OceanOutcome outcome) {
+  if (outcome)
+    if (auto fault = untimely(**outcome)) outcome = unexpected(*fault);
+  if (outcome)
+    take(order, *outcome);
+  else
+    refuse(order, outcome.error());
+  if (handlers_.settled) handlers_.settled();
+}
+
+void ForecastWatch::take(const OceanOrder& order, const std::shared_ptr<const OceanSource>& ocean) {
+  if (handlers_.noted)
+    for (const auto& note : ocean->notes) handlers_.noted(note);
+  if (ocean->try_again) try_again_ = world_.clock.tick() + std::chrono::round<Tick::duration>(kTryAgain);
+  std::string left_out;
+  for (const auto& file : ocean->left_out) left_out += (left_out.empty() ? "" : "; ") + file.why;
+  const bool same = current_ && ocean->key && current_->key == ocean->key;
+  // What remains of a set must not take us back.
+  const bool older = !left_out.empty() && current_ && !same && !later(*ocean, *current_);
+  if (!same && !older) {
+    current_ = ocean;
+    accept_ocean(order, *ocean);
+    handlers_.loaded(current_);
+  }
+  problem_ = left_out;
+  if (!left_out.empty()) say_refused(left_out);
+}
+
+void ForecastWatch::refuse(const OceanOrder& order, const IngestFault& fault) {
+  problem_ = fault.what;
+  if (fault.passing) try_again_ = world_.clock.tick() + std::chrono::round<Tick::duration>(kTryAgain);
+  if (!current_)
+    if (auto last = last_accepted(order, world_); last && !untimely(*last)) {
+      current_ = std::move(last);
+      handlers_.loaded(current_);
+    }
+  say_refused(fault.what);
+}
+
+void ForecastWatch::say_refused(const std::string& problem) {
+  if (problem == said_) return;
+  said_ = problem;
+  handlers_.refused(problem);
+}
+
+std::string ForecastWatch::in_use() const {
+  if (!current_) return "none";
+  const auto& facts = current_->forecast.facts();
+  if (!facts.has_time) return current_->label();
+  const double hours = current_->forecast.age(world_.clock.utc()).count() / 3600;
+  return hours >= 0 ? fmt::format("{}, {:.1f} h old", current_->label(), hours)
+                    : fmt::format("{}, begins in {:.1f} h", current_->label(), -hours);
 }
 
 }  // namespace glidehelm::daemon

@@ -39,6 +39,8 @@ IngestOptions ingest_options(const OceanOrder& order) {
   options.north = order.mission.currents.north_variable;
   options.time_epoch = order.mission.currents.time_epoch;
   options.keep_in = order.grids;
+  options.cache = order.cache;
+  options.settle = order.settle;
   return options;
 }
 
@@ -53,6 +55,15 @@ Expected<std::vector<ocean::AnalyticField>, std::string> formulas_of(const Ocean
   return fields;
 }
 
+/// What a removed name is to the last user of a grid that no cache keeps.
+std::shared_ptr<const void> remover(const std::string& path, world::Files& files) {
+  return std::shared_ptr<const void>{nullptr, [path, &files](const void*) {
+                                       const auto slash = path.find_last_of('/');
+                                       if (auto folder = files.open_folder(path.substr(0, slash)))
+                                         static_cast<void>((*folder)->unlink(path.substr(slash + 1)));
+                                     }};
+}
+
 OceanResult assemble(const OceanOrder& order, std::unique_ptr<LoadedGrid> grid, world::Files& files) {
   const auto box = box_of(order);
   auto formulas = formulas_of(order, box);
@@ -63,6 +74,10 @@ OceanResult assemble(const OceanOrder& order, std::unique_ptr<LoadedGrid> grid, 
   std::optional<verify::InputFile> input;
   std::vector<std::string> sources;
   std::shared_ptr<const void> grid_file;
+  std::optional<Sha256> key;
+  std::vector<LeftOut> left_out;
+  bool try_again = false;
+  std::vector<std::string> notes;
   auto forecast = [&]() -> Expected<ocean::Forecast, ocean::ForecastError> {
     if (!grid) return ocean::Forecast::prepare(*formulas);
     sources = grid->files;
@@ -70,12 +85,14 @@ OceanResult assemble(const OceanOrder& order, std::unique_ptr<LoadedGrid> grid, 
     const auto identity =
         verify::grid_identity({reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), verify::kGridHead)});
     if (identity && !grid->path.empty()) input = verify::InputFile{grid->path, *identity};
-    if (!grid->path.empty())
-      grid_file = std::shared_ptr<const void>{nullptr, [path = grid->path, &files](const void*) {
-                                                const auto slash = path.find_last_of('/');
-                                                if (auto folder = files.open_folder(path.substr(0, slash)))
-                                                  static_cast<void>((*folder)->unlink(path.substr(slash + 1)));
-                                              }};
+    if (grid->hold)
+      grid_file = grid->hold;
+    else if (!grid->path.empty())
+      grid_file = remover(grid->path, files);
+    key = grid->key;
+    left_out = grid->left_out;
+    try_again = grid->try_again;
+    notes = grid->notes;
     const auto profile =
         ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
     const std::shared_ptr<LoadedGrid> owner{std::move(grid)};
@@ -83,7 +100,8 @@ OceanResult assemble(const OceanOrder& order, std::unique_ptr<LoadedGrid> grid, 
   }();
   if (!forecast) return unexpected(forecast.error().message());
   return std::make_shared<const OceanSource>(OceanSource{std::move(forecast).value(), input, options,
-                                                         m.currents.analytic, order.start, box, sources, grid_file});
+                                                         m.currents.analytic, order.start, box, sources, grid_file, key,
+                                                         left_out, try_again, notes});
 }
 
 }  // namespace
@@ -102,18 +120,63 @@ OceanResult load_ocean(const OceanOrder& order, world::World& world) {
   return assemble(order, std::move(grid).value(), world.files);
 }
 
-void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanResult)> then) {
+namespace {
+
+/// Numbers that are no field to plan on stay so until the files change.
+OceanOutcome outcome(OceanResult assembled) {
+  if (!assembled) return unexpected(IngestFault{assembled.error(), false});
+  return std::move(*assembled);
+}
+
+/// Which files, and how they are read.
+std::string name_of(const OceanOrder& order) {
+  std::string name = recipe_of(ingest_options(order));
+  for (const auto& pattern : order.mission.currents.files) name += "\n" + pattern;
+  return name;
+}
+
+}  // namespace
+
+void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanOutcome)> then) {
   if (order.mission.currents.files.empty()) {
-    world.net.post([order, then = std::move(then), &files = world.files] { then(assemble(order, nullptr, files)); });
+    world.net.post(
+        [order, then = std::move(then), &files = world.files] { then(outcome(assemble(order, nullptr, files))); });
     return;
   }
   ingest_files_async(order.mission.currents.files, ingest_options(order), world,
-                     [order, then = std::move(then), &files = world.files](IngestResult grid) {
+                     [order, then = std::move(then), &files = world.files](IngestOutcome grid) {
                        if (!grid)
                          then(unexpected(grid.error()));
                        else
-                         then(assemble(order, std::move(grid).value(), files));
+                         then(outcome(assemble(order, std::move(grid).value(), files)));
                      });
+}
+
+std::shared_ptr<const OceanSource> last_accepted(const OceanOrder& order, world::World& world) {
+  if (!order.cache || order.mission.currents.files.empty()) return nullptr;
+  const auto key = order.cache->accepted(name_of(order));
+  std::string damage;
+  auto mapped = key ? order.cache->take(*key, damage) : nullptr;
+  if (!mapped) return nullptr;
+  std::vector<std::string> files;
+  for (const auto& source : mapped->view.facts.sources) files.push_back(source.name);
+  auto grid = std::make_unique<LoadedGrid>(LoadedGrid{std::move(mapped->mapping),
+                                                      std::move(mapped->view),
+                                                      std::move(mapped->path),
+                                                      std::move(files),
+                                                      std::move(mapped->hold),
+                                                      key,
+                                                      {},
+                                                      false,
+                                                      {}});
+  auto ocean = assemble(order, std::move(grid), world.files);
+  return ocean ? *ocean : nullptr;
+}
+
+void accept_ocean(const OceanOrder& order, const OceanSource& ocean) {
+  if (!order.cache || !ocean.key) return;
+  order.cache->accept(name_of(order), *ocean.key);
+  static_cast<void>(order.cache->save());  // without it a restart reads the files again
 }
 
 std::optional<Current> mean_along(const OceanSource& ocean, const mission::Dive& dive, GeoPoint to, double until_s) {

@@ -8,6 +8,7 @@
 #include "core/mission/learning.hpp"
 #include "core/mission/mission.hpp"
 #include "core/ocean/forecast.hpp"
+#include "daemon/ingest_client.hpp"
 #include "daemon/verify/dossier_json.hpp"
 #include "daemon/world/world.hpp"
 
@@ -24,6 +25,10 @@ struct OceanSource {
   std::vector<std::string> files;  ///< published files that went in
   /// Removes the grid's file when the last user lets go; empty when nothing is to be removed.
   std::shared_ptr<const void> grid_file;
+  std::optional<Sha256> key{};  ///< with a cache: which grid it is
+  std::vector<LeftOut> left_out{};
+  bool try_again{};                  ///< a file was left out for a reason that passes
+  std::vector<std::string> notes{};  ///< what an operator may want to know of the loading
 
   /// "rtofs 2024-10-28T00:00:00Z (sha256 1a2b3c4d5e6f)": provenance in one line.
   [[nodiscard]] std::string label() const;
@@ -38,11 +43,18 @@ struct OceanOrder {
   bool has_coast{};
   Instant start;
   std::optional<GeoPoint> from;
+  std::shared_ptr<GridCache> cache{};  ///< async only
+  Seconds settle{};                    ///< how long a file must have been left alone
 };
 /// Blocks: for the command line.
 OceanResult load_ocean(const OceanOrder& order, world::World& world);
+using OceanOutcome = Expected<std::shared_ptr<const OceanSource>, IngestFault>;
 /// `then` is called from the loop.
-void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanResult)> then);
+void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanOutcome)> then);
+/// The last forecast that was accepted for this order, from its cache, whatever the files are now; none when there was none.
+std::shared_ptr<const OceanSource> last_accepted(const OceanOrder& order, world::World& world);
+/// Remembers this forecast as the one that was accepted last for this order.
+void accept_ocean(const OceanOrder& order, const OceanSource& ocean);
 
 /// Mean of the uncorrected forecast over the dive profile along the straight way from `dive` to a fix at epoch second
 /// `until_s`, flown at constant speed: 24 samples. None when a sample has no current, or the dive is shorter than 10 min

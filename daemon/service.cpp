@@ -80,6 +80,12 @@ bool Service::start() {
     return false;
   }
   journal_ = std::move(journal).value();
+  // After the journal, which tells whether another daemon owns the folder. Everything in it can be made again: without it
+  // each start reads the forecasts anew.
+  if (auto cache = GridCache::open(world_.files, grids_))
+    cache_ = std::move(*cache);
+  else
+    log_.warn("", "forecasts are not kept: " + cache.error());
   if (!journal_->note().empty()) log_.warn("", journal_->note());
   worker_ = std::make_unique<PlanningWorker>();
   for (const auto& entry : d.gliders) {
@@ -135,7 +141,8 @@ Expected<std::unique_ptr<Session>, std::string> Service::make_session(const conf
               log_.fact(mission::Level::page, "",
                         why + ": the process ends at once and reads the disk again when it is restarted");
               stop(kExitNotDurable, "");
-            }};
+            },
+            cache_};
   auto session = std::make_unique<Session>(entry, std::move(desk));
   const auto chain = chain_for(entry.name, configuration);
   if (auto opened = session->open(chain.empty() ? kDefaultSlot : chain.front().mission.slot); !opened)

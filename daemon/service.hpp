@@ -49,6 +49,7 @@ class Service {
   world::ServiceManager manager_;
   std::unique_ptr<world::Folder> state_;
   std::string grids_;
+  std::shared_ptr<GridCache> cache_;
   std::unique_ptr<Journal> journal_;
   std::unique_ptr<PlanningWorker> worker_;
   std::vector<std::unique_ptr<Session>> sessions_;

@@ -66,20 +66,21 @@ Session::Session(config::GliderEntry entry, Desk desk)
       forecast_{desk_.world,
                 desk_.grids,
                 {[this](const std::shared_ptr<const OceanSource>& ocean) {
-                   std::string text = "forecast in use: " + ocean->label();
+                   std::string text = "forecast in use: " + forecast_.in_use();
                    for (const auto& warning : ocean->forecast.facts().warnings) text += "; warning: " + warning;
                    desk_.log.info(entry_.name, text);
-                   plan_waiting();
-                   desk_.changed();
                  },
                  [this](const std::string& problem) {
-                   desk_.log.alert(entry_.name,
-                                   forecast_.current()
-                                       ? "the new forecast is refused, the last good one stays in use: " + problem
-                                       : "no forecast: " + problem);
+                   desk_.log.alert(entry_.name, forecast_.current() ? "a forecast is refused: " + problem +
+                                                                          ". In use stays " + forecast_.in_use()
+                                                                    : "no forecast: " + problem);
+                 },
+                 [this](const std::string& note) { desk_.log.warn(entry_.name, note); },
+                 [this] {
                    plan_waiting();
                    desk_.changed();
-                 }}},
+                 }},
+                desk_.cache},
       alive_{std::make_shared<bool>(true)} {}
 
 Session::~Session() {
@@ -345,7 +346,7 @@ void Session::carry_out(const mission::BeginPlanning& e) {
   follow_mission();
   forecast_.look();
   planning_waits_ = e;
-  if (!forecast_.loading()) plan_waiting();
+  if (!forecast_.holds_up()) plan_waiting();
 }
 
 /// Starts the plan that waits for its forecast; without one there is nothing to plan with.

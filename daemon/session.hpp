@@ -28,6 +28,7 @@ struct Desk {
   std::function<void()> changed;  ///< something began or ended: the daemon may be quiescent
   std::function<void(const std::string&, std::uint64_t)> handled;  ///< bytes of a line, in total, are handled
   std::function<void(const std::string&)> fatal;  ///< the journal or a folder failed in a way that ends the process
+  std::shared_ptr<GridCache> cache{};             ///< of the folder of grids, for all sessions
 };
 
 /// One glider: its line, its dialog, its pilot, and the hands that carry out what the pilot wants. Runs in the loop's thread.

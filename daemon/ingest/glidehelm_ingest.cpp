@@ -1,32 +1,56 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 #include "daemon/ingest/join.hpp"
-#include "daemon/ingest/opendap.hpp"
+#include "daemon/ingest/sandbox.hpp"
+#include "daemon/ingest/sources.hpp"
 #include "daemon/world/real_files.hpp"
 #include "daemon/world/real_rng.hpp"
 
-// glidehelm-ingest FILE… -o GRID: published forecasts in, one flat grid out. Exit 0 done, 1 refused, 2 usage.
+// glidehelm-ingest FILE… -o GRID: published forecasts in, one flat grid out. Exit 0 done, 1 refused, 2 usage, 3 more memory
+// is needed than there is, 4 refused before (--refused-before), 5 not to be had now: a later try may succeed.
+//
+// With --tell, what it is doing stands on standard output, so that whoever started it knows which file it died of:
+//   source N SHA256 DEVICE INODE SIZE MODIFIED_NS CHANGED_NS    file N (from 0) was copied; it looked like that
+//   copying N / reading N / joining / writing                   what comes next
 
 using namespace glidehelm;
 using namespace glidehelm::ingest;
 
 namespace {
 
-constexpr std::size_t kFileAtMost = std::size_t{8} << 30;
+constexpr std::uint64_t kFileAtMost = 4'000'000'000, kKeptAtMost = std::uint64_t{512} << 20;
+constexpr std::size_t kRefusedListAtMost = std::size_t{4} << 20;
 
 struct Arguments {
   std::vector<std::string> files;
-  std::string output, variables, epoch, area, heights, equator_band, fill_gaps;
+  std::string output, variables, epoch, area, heights, equator_band;
+  double settle_s{};
+  bool refused_before{}, tell{};
 };
+
+/// Says what comes next, at once: the next thing may be the last.
+class Story {
+ public:
+  explicit Story(bool told) : told_{told} {}
+  void tell(const std::string& what) const {
+    if (told_) std::cout << what << std::endl;
+  }
+
+ private:
+  bool told_;
+};
+
+constexpr int kRefused = 1, kMemory = 3, kRefusedBefore = 4, kNotNow = 5;
 
 int refuse(const std::string& what) {
   std::cerr << "glidehelm-ingest: " << what << '\n';
-  return 1;
+  return kRefused;
 }
 int misuse(const std::string& what) {
   std::cerr << "glidehelm-ingest: " << what << '\n';
@@ -69,11 +93,6 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
       return "--equator-band " + arguments.equator_band + ": allowed is 0 to 90 degrees";
     options.equator_band_deg = *degrees;
   }
-  if (!arguments.fill_gaps.empty()) {
-    const auto km = number_from(arguments.fill_gaps);
-    if (!km || *km < 0 || *km > 500) return "--fill-gaps " + arguments.fill_gaps + ": allowed is 0 to 500 km";
-    options.fill_gaps_m = *km * 1000;
-  }
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
   for (const auto& part : split(arguments.area, '/'))
@@ -91,28 +110,17 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
   return std::nullopt;
 }
 
-/// A private copy of a file that did not change while it was read.
-Expected<std::string, std::string> read_whole(world::Files& files, const std::string& path) {
-  const auto before = files.stat(path);
-  if (!before) return unexpected(before.error().message());
-  if (!before->regular) return unexpected(std::string{"not a regular file"});
-  auto bytes = files.read(path, kFileAtMost);
-  if (!bytes) return unexpected(bytes.error().message());
-  const auto behind = files.stat(path);
-  if (!behind) return unexpected(behind.error().message());
-  if (before->size != behind->size || before->modified_ns != behind->modified_ns || before->inode != behind->inode ||
-      bytes->size() != before->size)
-    return unexpected(std::string{"changed while it was read: it is still being written"});
-  return std::move(*bytes);
+std::string folder_of(const std::string& path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
 }
 
 /// Writes beside the target under a name of our own and renames: nobody ever sees half a grid.
 world::FileResult<Done> write_file(world::Files& files, world::Rng& rng, const std::string& path,
                                    const std::string& bytes) {
   const auto slash = path.rfind('/');
-  const std::string folder_path = slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
   const std::string name = path.substr(slash == std::string::npos ? 0 : slash + 1);
-  auto folder = files.open_folder(folder_path);
+  auto folder = files.open_folder(folder_of(path));
   if (!folder) return unexpected(folder.error());
   const std::string staged = "." + name + "." + std::to_string(rng.next());
   if (auto made = (*folder)->create(staged, bytes, 0644); !made) return unexpected(made.error());
@@ -123,38 +131,97 @@ world::FileResult<Done> write_file(world::Files& files, world::Rng& rng, const s
   return (*folder)->sync();
 }
 
+void tell_source(const Story& story, const Sources& sources, std::size_t i) {
+  const auto& stat = sources.stat(i);
+  std::string line = "source " + std::to_string(i) + " " + sources.identities()[i].hash.hex();
+  for (const auto number : {stat.device, stat.inode, stat.size}) line += " " + std::to_string(number);
+  for (const auto number : {stat.modified_ns, stat.changed_ns}) line += " " + std::to_string(number);
+  story.tell(line);
+}
+
+int refuse(const Sources& sources, const SourceFault& fault) {
+  const auto code = refuse(sources.name(fault.file) + ": " + fault.what);
+  return fault.passing ? kNotNow : code;
+}
+
+/// The contents of which standard input says that they were refused before: one SHA-256 a line, of one file or over the
+/// hashes of a set.
+std::set<std::string> refused_before(world::Files& files) {
+  std::set<std::string> hashes;
+  const auto text = files.read_descriptor(0, kRefusedListAtMost);
+  if (text)
+    for (auto& line : split(*text, '\n')) hashes.insert(std::move(line));
+  return hashes;
+}
+
+/// 4 when the whole set, or one of its files, is known to be bad.
+int look_up(const Story& story, const Sources& sources, const std::set<std::string>& known) {
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (known.count(ocean::provenance_of({sources.identities()[i]}).hex()) != 0) {
+      story.tell("reading " + std::to_string(i));
+      return kRefusedBefore;
+    }
+  if (known.count(ocean::provenance_of(sources.identities()).hex()) == 0) return 0;
+  story.tell("joining");
+  return kRefusedBefore;
+}
+
+/// Files that cannot be opened have no `Sources` to be named by.
+int refuse_to_open(const Story& story, const Arguments& arguments, const SourceFault& fault) {
+  story.tell("copying " + std::to_string(fault.file));
+  const int code = refuse(arguments.files[fault.file] + ": " + fault.what);
+  return fault.passing ? kNotNow : code;
+}
+
+Expected<std::vector<Part>, int> read_parts(const Story& story, Sources& sources, const Units& units,
+                                            const ReadOptions& options) {
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    story.tell("reading " + std::to_string(i));
+    const auto bytes = sources.take(i);
+    if (!bytes) return unexpected(refuse(sources, bytes.error()));
+    auto part = read_part(sources.name(i), std::as_bytes(std::span{bytes->data(), bytes->size()}), units, options);
+    if (!part) return unexpected(refuse(sources.name(i) + ": " + part.error().what));
+    parts.push_back(std::move(*part));
+  }
+  return parts;
+}
+
 int run(const Arguments& arguments) {
   ReadOptions options;
   if (const auto wrong = read_options(arguments, options)) return misuse(*wrong);
+  const Story story{arguments.tell};
   world::RealFiles files;
   world::RealRng rng;
   const auto units = Units::load();
   if (!units) return refuse(units.error().what);
+  const auto known = arguments.refused_before ? refused_before(files) : std::set<std::string>{};
+  auto sources = Sources::open(arguments.files, kFileAtMost);
+  if (!sources) return refuse_to_open(story, arguments, sources.error());
+  if (auto entered = enter_sandbox(folder_of(arguments.output), false); !entered) return refuse(entered.error());
 
-  std::vector<Part> parts;
-  for (const auto& name : arguments.files) {
-    if (is_address(name)) {
-      auto part = read_address(name, *units, options);
-      if (!part) return refuse(name + ": " + part.error().what);
-      parts.push_back(std::move(*part));
-      continue;
-    }
-    const auto bytes = read_whole(files, name);
-    if (!bytes) return refuse(name + ": " + bytes.error());
-    auto part = read_part(name, std::as_bytes(std::span{bytes->data(), bytes->size()}), *units, options);
-    if (!part) return refuse(name + ": " + part.error().what);
-    parts.push_back(std::move(*part));
+  if (auto identified = sources->identify(Seconds{arguments.settle_s}, kKeptAtMost); !identified) {
+    story.tell("copying " + std::to_string(identified.error().file));
+    return refuse(*sources, identified.error());
   }
-  auto whole = pair_halves(std::move(parts));
+  for (std::size_t i = 0; i < sources->size(); ++i) tell_source(story, *sources, i);
+  if (const int code = look_up(story, *sources, known); code != 0) return code;
+  auto parts = read_parts(story, *sources, *units, options);
+  if (!parts) return parts.error();
+  story.tell("joining");
+  auto whole = pair_halves(std::move(*parts));
   if (!whole) return refuse(whole.error().what);
   const auto grid = join(std::move(*whole));
   if (!grid) return refuse(grid.error().what);
   for (const auto& warning : grid->facts.warnings) std::cerr << "glidehelm-ingest: warning: " << warning << '\n';
+  story.tell("writing");
   const std::string bytes = ocean::write_grid(*grid);
   if (const auto view = ocean::open_grid(std::as_bytes(std::span{bytes.data(), bytes.size()})); !view)
     return refuse("the grid made of " + arguments.files.front() + " is not sound, " + view.error().message());
-  if (auto written = write_file(files, rng, arguments.output, bytes); !written)
-    return refuse(arguments.output + ": " + written.error().message());
+  if (auto written = write_file(files, rng, arguments.output, bytes); !written) {
+    refuse(arguments.output + ": " + written.error().message());
+    return kNotNow;
+  }
   return 0;
 }
 
@@ -171,8 +238,13 @@ int main(int argc, char** argv) {
   app.add_option("--heights", arguments.heights,
                  "currents from the height of the sea surface: auto (where there is no velocity), always, never");
   app.add_option("--equator-band", arguments.equator_band, "degrees of latitude within which heights say nothing");
-  app.add_option("--fill-gaps", arguments.fill_gaps,
-                 "km within which gaps of surface currents are filled (default: two cells of HF radar files)");
+  app.add_option("--settle", arguments.settle_s,
+                 "seconds that a file must have been left alone; a younger one is waited for")
+      ->check(CLI::Range(0.0, 600.0));
+  app.add_flag("--refused-before", arguments.refused_before,
+               "standard input has one SHA-256 a line: contents that are refused without reading them again");
+  app.add_flag("--tell", arguments.tell,
+               "say on standard output what is being done, for the program that started this one");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);
@@ -183,7 +255,8 @@ int main(int argc, char** argv) {
   try {
     return run(arguments);
   } catch (const std::bad_alloc&) {
-    return refuse(arguments.files.front() + ": needs more memory than there is");
+    refuse(arguments.files.front() + ": needs more memory than there is");
+    return kMemory;
   } catch (const std::exception& error) {  // a bug of ours, but this program must answer in its own words
     return refuse(arguments.files.front() + ": " + error.what());
   }

@@ -4,7 +4,11 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
+
+#include "core/base/text.hpp"
 
 namespace glidehelm::ingest {
 
@@ -160,6 +164,42 @@ Fault truncated(std::uint64_t found, std::uint64_t needed) {
   return {"truncated: the file has " + std::to_string(found) + " bytes, its header needs " + std::to_string(needed)};
 }
 
+bool begins_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
+
+/// What bytes are that are no NetCDF, as far as their beginning tells.
+std::string what_it_is(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  static constexpr std::pair<std::string_view, const char*> kKnown[] = {
+      {"\x1f\x8b"sv, "compressed with gzip; unpack it first"},
+      {"BZh"sv, "compressed with bzip2; unpack it first"},
+      {"\xfd"
+       "7zXZ"sv,
+       "compressed with xz; unpack it first"},
+      {"\x28\xb5\x2f\xfd"sv, "compressed with zstd; unpack it first"},
+      {"PK\x03\x04"sv, "a ZIP archive (or Zarr in one); unpack it first"},
+      {"GRIB"sv, "a GRIB file; convert it to NetCDF first, for example with cdo or wgrib2"},
+      {"BUFR"sv, "a BUFR file"},
+      {"\x0e\x03\x13\x01"sv, "an HDF4 file; convert it to NetCDF first"},
+      {"%PDF"sv, "a PDF document"},
+      {"\x89PNG"sv, "a picture"},
+      {"\xff\xd8\xff"sv, "a picture"}};
+  for (const auto& [begin, what] : kKnown)
+    if (begins_with(bytes, begin)) return what;
+  if (bytes.find_first_not_of('\0') == std::string_view::npos)
+    return "nothing but zero bytes: room was made for it and nothing written";
+  std::string_view visible = bytes.substr(0, 512);
+  if (begins_with(visible, "\xef\xbb\xbf")) visible.remove_prefix(3);
+  visible.remove_prefix(std::min(visible.size(), visible.find_first_not_of(" \t\r\n")));
+  const auto first = lower(visible.substr(0, 9));
+  if (begins_with(first, "<!doctype") || begins_with(first, "<html"))
+    return "a web page: a server answered with a page instead of the file, perhaps an error or a login";
+  if (begins_with(first, "<?xml")) return "an XML document: a server answered with it instead of the file";
+  if (begins_with(first, "netcdf ")) return "CDL, the text form of a NetCDF file; make the file with ncgen";
+  const bool text = std::all_of(visible.begin(), visible.end(),
+                                [](unsigned char c) { return c >= 0x20 || c == '\n' || c == '\r' || c == '\t'; });
+  return text ? "plain text" : "it begins with neither CDF nor the HDF5 signature";
+}
+
 }  // namespace
 
 Result<std::uint64_t> classic_length(std::span<const std::byte> file) {
@@ -219,7 +259,7 @@ Result<Done> check_whole(std::span<const std::byte> file) {
     if (needed > file.size()) return unexpected(truncated(file.size(), needed));
     return Done{};
   }
-  return fault("not a NetCDF file (it begins with neither CDF nor the HDF5 signature)");
+  return fault("not a NetCDF file: " + what_it_is({reinterpret_cast<const char*>(file.data()), file.size()}));
 }
 
 }  // namespace glidehelm::ingest

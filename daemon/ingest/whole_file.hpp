@@ -17,7 +17,8 @@ namespace glidehelm::ingest {
 Result<std::uint64_t> classic_length(std::span<const std::byte> file);
 
 /// Success when the bytes are a NetCDF file as long as its own header says: classic by `classic_length`, NetCDF-4 by the
-/// end-of-file address of its HDF5 superblock. Else what is wrong with it, with both lengths.
+/// end-of-file address of its HDF5 superblock. Else what is wrong with it, with both lengths; of another kind of file, which
+/// kind it is (compressed, GRIB, a web page, text, …).
 Result<Done> check_whole(std::span<const std::byte> file);
 
 }  // namespace glidehelm::ingest

@@ -32,6 +32,8 @@ struct FileStat {
   std::uint32_t owner{}, links{};
   bool regular{}, folder{};
   std::uint32_t mode{};  ///< permission bits, 07777
+  /// When content or attributes changed last: the file system's own note, which nobody can set back. 0 in twins.
+  std::int64_t changed_ns{};
   friend bool operator==(const FileStat&, const FileStat&) = default;
 };
 

@@ -16,6 +16,21 @@
 
 namespace glidehelm::world {
 
+FileStat stat_of(const struct ::stat& s) {
+  FileStat result;
+  result.device = s.st_dev;
+  result.inode = s.st_ino;
+  result.size = static_cast<std::uint64_t>(s.st_size);
+  result.modified_ns = static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec;
+  result.changed_ns = static_cast<std::int64_t>(s.st_ctim.tv_sec) * 1'000'000'000 + s.st_ctim.tv_nsec;
+  result.owner = s.st_uid;
+  result.links = static_cast<std::uint32_t>(s.st_nlink);
+  result.regular = S_ISREG(s.st_mode);
+  result.folder = S_ISDIR(s.st_mode);
+  result.mode = s.st_mode & 07777U;
+  return result;
+}
+
 namespace {
 
 /// A descriptor that closes itself.
@@ -40,20 +55,6 @@ class Fd {
 
 Unexpected<FileError> failed(std::string operation, std::string path) {
   return {FileError{std::move(operation), std::move(path), errno}};
-}
-
-FileStat stat_of(const struct ::stat& s) {
-  FileStat result;
-  result.device = s.st_dev;
-  result.inode = s.st_ino;
-  result.size = static_cast<std::uint64_t>(s.st_size);
-  result.modified_ns = static_cast<std::int64_t>(s.st_mtim.tv_sec) * 1'000'000'000 + s.st_mtim.tv_nsec;
-  result.owner = s.st_uid;
-  result.links = static_cast<std::uint32_t>(s.st_nlink);
-  result.regular = S_ISREG(s.st_mode);
-  result.folder = S_ISDIR(s.st_mode);
-  result.mode = s.st_mode & 07777U;
-  return result;
 }
 
 bool is_component(std::string_view name) {

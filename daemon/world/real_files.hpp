@@ -2,7 +2,12 @@
 
 #include "daemon/world/files.hpp"
 
+struct stat;
+
 namespace glidehelm::world {
+
+/// What the system tells of a file, in our words.
+FileStat stat_of(const struct ::stat& s);
 
 /// The file system of the machine. Folders hold a descriptor; names below them are opened with openat2(BENEATH,
 /// NO_SYMLINKS), or with O_NOFOLLOW where the kernel has no openat2.

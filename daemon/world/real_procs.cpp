@@ -85,6 +85,21 @@ struct Launch {
   pid_t parent{};
 };
 
+/// Sets what the request limits; a hard limit equals the soft one, but for CPU time, whose soft limit tells why.
+bool set_limits(const ProcessRequest& request) {
+  const auto limited = [](decltype(RLIMIT_AS) what, std::size_t soft, std::size_t hard) {
+    const rlimit limit{soft, hard};
+    return ::setrlimit(what, &limit) == 0;
+  };
+  const auto none_or = [&](decltype(RLIMIT_AS) what, std::size_t most) {
+    return most == 0 || limited(what, most, most);
+  };
+  const std::size_t cpu = request.cpu_at_most_s;
+  return none_or(RLIMIT_AS, request.memory_at_most) && none_or(RLIMIT_FSIZE, request.file_at_most) &&
+         none_or(RLIMIT_NOFILE, request.descriptors_at_most) && (cpu == 0 || limited(RLIMIT_CPU, cpu, cpu + 1)) &&
+         limited(RLIMIT_CORE, 0, 0);
+}
+
 /// What runs between vfork and exec, in the parent's memory: only async-signal-safe calls, no allocation, nothing written
 /// that the parent reads.
 [[noreturn]] void become(const Launch& launch) {
@@ -105,14 +120,17 @@ struct Launch {
   if (has_three && ::dup2(safe_three, 3) < 0) give_up();
   // Asio's sockets are not close-on-exec: everything above is marked.
   if (::syscall(SYS_close_range, has_three ? 4U : 3U, ~0U, CLOSE_RANGE_CLOEXEC) != 0) give_up();
-  for (const int number : {SIGPIPE, SIGHUP, SIGINT, SIGTERM}) ::signal(number, SIG_DFL);
+  for (const int number : {SIGPIPE, SIGHUP, SIGINT, SIGTERM, SIGXCPU, SIGXFSZ}) ::signal(number, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  const std::size_t most = launch.request->memory_at_most;
-  if (const rlimit limit{most, most}; most > 0 && ::setrlimit(RLIMIT_AS, &limit) != 0) give_up();
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
+  if (launch.request->disposable) {
+    if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) give_up();
+    // Only a wish: without /proc the child is an ordinary one.
+    if (const int score = ::open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC); score >= 0)
+      static_cast<void>(!::write(score, "500", 3));
+  }
+  if (!set_limits(*launch.request)) give_up();
   ::execve(launch.program, launch.arguments, launch.environment);
   give_up();
   ::_exit(127);
@@ -203,7 +221,8 @@ ProcessResult execute(const ProcessRequest& request, const std::atomic<bool>& ki
   arguments.push_back(nullptr);
   std::vector<std::string> settings{"LC_ALL=C"};
   for (const char* name : {"PATH", "TMPDIR"})
-    if (const char* value = std::getenv(name)) settings.push_back(std::string{name} + "=" + value);
+    if (const char* value = std::getenv(name); value != nullptr && !request.disposable)
+      settings.push_back(std::string{name} + "=" + value);
   std::vector<char*> environment;
   for (auto& setting : settings) environment.push_back(setting.data());
   environment.push_back(nullptr);
@@ -248,6 +267,23 @@ ProcessResult execute(const ProcessRequest& request, const std::atomic<bool>& ki
 }
 
 }  // namespace
+
+std::string death_by(int signal) {
+  switch (signal) {
+    case SIGXCPU:
+      return "used more CPU time than it may";
+    case SIGXFSZ:
+      return "wrote a larger file than it may";
+    case SIGSYS:
+      return "asked the system for something that it may not";
+    case SIGKILL:
+      return "was killed, perhaps because the machine ran out of memory";
+    default:
+      break;
+  }
+  const char* name = ::sigdescr_np(signal);
+  return "died of signal " + std::to_string(signal) + (name != nullptr ? std::string{" ("} + name + ")" : "");
+}
 
 struct RealProcs::Child {
   std::atomic<bool> kill{false}, finished{false};

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 #include <map>
+#include <utility>
 
 #include "core/base/utc.hpp"
 #include "tests/support/fields.hpp"
@@ -86,6 +87,12 @@ struct Disk final : world::Files {
   std::string scratch() override { return "/scratch"; }
 };
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kLimitOfMemory = 0;  // a sanitizer needs terabytes of address space
+#else
+constexpr std::size_t kLimitOfMemory = std::size_t{1} << 30;
+#endif
+
 /// A child that writes `grid` where it is told to, and ends as told.
 struct Child final : world::Procs {
   Disk& disk;
@@ -119,6 +126,9 @@ struct Loop final : world::Net {
   void connect_unix(const std::string&, Connected) override {}
   void on_signal(int, std::function<void()>) override {}
   void post(std::function<void()> work) override { posted.push_back(std::move(work)); }
+  void turn() {
+    for (auto& work : std::exchange(posted, {})) work();
+  }
   void run() override {}
   void stop() override {}
 };
@@ -165,12 +175,16 @@ TEST_CASE("the child is told which files, where to write and how to read, and no
   const auto loaded = ingest_files({"/data/*.nc", "/more/c.nc"}, options, desk.world);
   REQUIRE(loaded);
   CHECK(desk.child.asked.program == "glidehelm-ingest");
-  CHECK(desk.child.asked.arguments == std::vector<std::string>{"-o", "/scratch/glidehelm-42.grid", "--variables",
-                                                               "uo,vo", "--time-epoch", "2000-01-01T00:00:00Z",
-                                                               "--area=-10.5/5/30/45", "--", "/data/a.nc", "/data/b.nc",
-                                                               "/more/c.nc"});
+  CHECK(desk.child.asked.arguments == std::vector<std::string>{"-o", "/scratch/glidehelm-42.grid", "--tell",
+                                                               "--variables", "uo,vo", "--time-epoch",
+                                                               "2000-01-01T00:00:00Z", "--area=-10.5/5/30/45", "--",
+                                                               "/data/a.nc", "/data/b.nc", "/more/c.nc"});
   CHECK(desk.child.asked.deadline == Seconds{7});
-  CHECK(desk.child.asked.memory_at_most == 1 << 30);
+  CHECK(desk.child.asked.memory_at_most == kLimitOfMemory);
+  CHECK(desk.child.asked.file_at_most == 1 << 30);
+  CHECK(desk.child.asked.cpu_at_most_s == 120);
+  CHECK(desk.child.asked.descriptors_at_most == 67);  // three files and 64 of its own
+  CHECK(desk.child.asked.disposable);
   CHECK((*loaded)->files == std::vector<std::string>{"/data/a.nc", "/data/b.nc", "/more/c.nc"});
   CHECK((*loaded)->view.axes.lats_deg == std::vector<double>{0, 1});
   CHECK((*loaded)->view.values[0] == 0.1F);  // still mapped, though the name is gone
@@ -188,16 +202,25 @@ TEST_CASE("a refusal of the child is passed on without its name, its warnings le
 TEST_CASE("a child that dies, hangs, floods or does not start is named with what it was reading") {
   Desk desk;
   desk.child.grid.clear();
-  const auto message = [&](End end, int code) {
-    desk.child.result = {end, code, "", ""};
+  const auto message = [&](End end, int code, const std::string& told = "") {
+    desk.child.result = {end, code, told, ""};
     return ingest_files({"/data/*.nc"}, {}, desk.world).error();
   };
-  CHECK(message(End::signalled, 11) == "glidehelm-ingest died of signal 11 while reading /data/a.nc and 1 more");
-  CHECK(message(End::deadline, 9) == "glidehelm-ingest took longer than 120 s while reading /data/a.nc and 1 more");
+  CHECK(message(End::signalled, 11) ==
+        "/data/a.nc and 1 more: glidehelm-ingest died of signal 11 (Segmentation fault) while reading it");
+  CHECK(message(End::signalled, 11, "reading 0\nreading 1\n") ==
+        "/data/b.nc: glidehelm-ingest died of signal 11 (Segmentation fault) while reading it");
+  CHECK(message(End::signalled, 24, "reading 1\njoining\n") ==
+        "/data/a.nc and 1 more: glidehelm-ingest used more CPU time than it may while reading it");
+  CHECK(message(End::deadline, 9) == "/data/a.nc and 1 more: glidehelm-ingest took longer than 300 s and was stopped");
   CHECK(message(End::output_too_long, 0) ==
-        "glidehelm-ingest complained without end while reading /data/a.nc and 1 more");
+        "/data/a.nc and 1 more: glidehelm-ingest complained without end while reading it");
   CHECK(message(End::not_started, 2) == "glidehelm-ingest cannot be started (error 2)");
-  CHECK(message(End::exited, 3) == "glidehelm-ingest ended with code 3 while reading /data/a.nc and 1 more");
+  CHECK(message(End::exited, 9) == "/data/a.nc and 1 more: glidehelm-ingest ended with code 9");
+  if (kLimitOfMemory != 0)
+    CHECK(message(End::exited, 3, "reading 0\n") ==
+          "/data/a.nc: reading it needs more than the 8192 MiB of memory that are allowed; cut it to the area, times "
+          "and depths of the mission");
 }
 
 TEST_CASE("what a killed child left behind is taken away") {
@@ -229,16 +252,39 @@ TEST_CASE("a pattern without files is an error that names it, and no child is st
 TEST_CASE("the daemon's variant answers from the loop, good or bad") {
   Desk desk;
   std::optional<bool> good;
-  ingest_files_async({"/data/*.nc"}, {}, desk.world, [&](IngestResult result) { good = result.has_value(); });
+  ingest_files_async({"/data/*.nc"}, {}, desk.world, [&](IngestOutcome result) { good = result.has_value(); });
   CHECK_FALSE(good);
   desk.child.later();
+  CHECK_FALSE(good);
+  desk.loop.turn();
   CHECK(good == true);
   CHECK(desk.disk.contents.empty());
 
   good.reset();
-  ingest_files_async({"/none"}, {}, desk.world, [&](IngestResult result) { good = result.has_value(); });
+  ingest_files_async({"/none"}, {}, desk.world, [&](IngestOutcome result) { good = result.has_value(); });
   CHECK_FALSE(good);
   REQUIRE(desk.loop.posted.size() == 1);
-  desk.loop.posted[0]();
+  desk.loop.turn();
   CHECK(good == false);
+}
+
+TEST_CASE("a name with a scheme is no pattern of this machine: it goes to the child as it is") {
+  Desk desk;
+  REQUIRE(ingest_files({"https://example.org/dodsC/sea"}, {}, desk.world));
+  CHECK(desk.child.asked.arguments.back() == "https://example.org/dodsC/sea");
+}
+
+TEST_CASE("the story of a child is read as far as it is one") {
+  const auto hash = Sha256::of(std::string_view{"a"});
+  const auto line = "source 0 " + hash.hex() + " 7 8 9 1700000000000000001 1700000000000000002\n";
+  const auto story = read_story(line + "source 1 nonsense 1 2 3 4 5\nreading 0\nreading x\nsou");
+  REQUIRE(story.sources.size() == 1);
+  CHECK(story.sources[0].content == hash);
+  CHECK(story.sources[0].identity == FileIdentity{7, 8, 9, 1'700'000'000'000'000'001, 1'700'000'000'000'000'002});
+  CHECK(story.at == std::size_t{0});
+  CHECK_FALSE(story.copying);
+  CHECK(read_story("copying 3\n").copying);
+  CHECK(read_story("copying 3\n").at == std::size_t{3});
+  CHECK_FALSE(read_story("reading 3\njoining\n").at);
+  CHECK(read_story("").sources.empty());
 }

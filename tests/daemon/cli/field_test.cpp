@@ -256,7 +256,8 @@ TEST_CASE("files that the child refuses end with 1 and its reason") {
   CHECK(said.code == 1);
   CHECK(said.out.empty());
   CHECK(said.err == "glidehelm field: " + (folder / "bad.nc") +
-                        ": not a NetCDF file (it begins with neither CDF nor the HDF5 signature)\n");
+                        ": not a NetCDF file: a web page: a server answered with a page instead of the file, perhaps "
+                        "an error or a login\n");
   CHECK(info({folder / "none*.nc"}).err == "glidehelm field: no file matches " + (folder / "none*.nc") + "\n");
 }
 

@@ -348,15 +348,18 @@ TEST_CASE("a truncated or unreadable file is refused before the library sees it"
   CHECK(cut.ran.code == 1);
   CHECK(cut.ran.err == "glidehelm-ingest: " + file + ": truncated: the file has " + std::to_string(bytes.size() - 30) +
                            " bytes, its header needs " + std::to_string(bytes.size()) + "\n");
-  CHECK(run_ingest(folder, folder / "nowhere.nc").ran.code == 1);
-  CHECK(run_ingest(folder, folder.path()).ran.err == "glidehelm-ingest: " + folder.path() + ": not a regular file\n");
+  CHECK(run_ingest(folder, folder / "nowhere.nc").ran.code == 5);
+  CHECK(run_ingest(folder, folder.path()).ran.err ==
+        "glidehelm-ingest: " + folder.path() +
+            ": is a folder; allowed are files, for example by a pattern like FOLDER/*.nc\n");
   test::write_bytes(folder / "page.nc", "<html>");
   CHECK(run_ingest(folder, folder / "page.nc").ran.err ==
         "glidehelm-ingest: " + (folder / "page.nc") +
-            ": not a NetCDF file (it begins with neither CDF nor the HDF5 signature)\n");
+            ": not a NetCDF file: a web page: a server answered with a page instead of the file, perhaps an error or a "
+            "login\n");
 }
 
-TEST_CASE("misuse ends with 2 and an unwritable output with 1") {
+TEST_CASE("misuse ends with 2, and an output that cannot be written now with 5") {
   const test::ScratchFolder folder;
   const auto file = test::make_netcdf(folder, "f.nc", kPlain);
   const std::string program = GLIDEHELM_INGEST;
@@ -368,7 +371,7 @@ TEST_CASE("misuse ends with 2 and an unwritable output with 1") {
     CHECK(test::run_command(program + " " + file + " -o " + (folder / "g") + " " + bad, folder).code == 2);
   CHECK(test::run_command(program + " --help", folder).code == 0);
   const auto unwritable = test::run_command(program + " " + file + " -o " + (folder / "no/such/grid"), folder);
-  CHECK(unwritable.code == 1);
+  CHECK(unwritable.code == 5);
   CHECK(unwritable.err.find((folder / "no/such/grid") + ": ") != std::string::npos);
 }
 

@@ -106,8 +106,24 @@ TEST_CASE("what is no NetCDF is said to be none") {
   CHECK(check_whole({}).error().what == "the file is empty");
   CHECK(check_whole(bytes_of("CDF\x03 something")).error().what ==
         "classic NetCDF of version 3, allowed are 1, 2 and 5");
-  CHECK(check_whole(bytes_of("<html>404 not found</html>")).error().what ==
-        "not a NetCDF file (it begins with neither CDF nor the HDF5 signature)");
+  using namespace std::string_literals;
+  const auto what = [](const std::string& bytes) { return check_whole(bytes_of(bytes)).error().what; };
+  const auto page =
+      "not a NetCDF file: a web page: a server answered with a page instead of the file, perhaps an error or "
+      "a login"s;
+  CHECK(what("<html>404 not found</html>") == page);
+  CHECK(what("\xef\xbb\xbf\r\n  <!DOCTYPE html><title>Sign in</title>") == page);
+  CHECK(what("<?xml version=\"1.0\"?><ExceptionReport/>") ==
+        "not a NetCDF file: an XML document: a server answered with it instead of the file");
+  CHECK(what("netcdf f {\n") == "not a NetCDF file: CDL, the text form of a NetCDF file; make the file with ncgen");
+  CHECK(what("quota exceeded\n") == "not a NetCDF file: plain text");
+  CHECK(what("\x1f\x8b\x08\0\0"s) == "not a NetCDF file: compressed with gzip; unpack it first");
+  CHECK(what("GRIB\0\0\0\2"s) ==
+        "not a NetCDF file: a GRIB file; convert it to NetCDF first, for example with cdo or wgrib2");
+  CHECK(what("PK\x03\x04....") == "not a NetCDF file: a ZIP archive (or Zarr in one); unpack it first");
+  CHECK(what(std::string(4096, '\0')) ==
+        "not a NetCDF file: nothing but zero bytes: room was made for it and nothing written");
+  CHECK(what("\x01\x02\x03\x04") == "not a NetCDF file: it begins with neither CDF nor the HDF5 signature");
 }
 
 TEST_CASE("real data: every NetCDF file of the samples is whole, and no truncated copy of one is") {

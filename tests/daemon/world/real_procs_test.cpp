@@ -203,3 +203,44 @@ TEST_CASE("the end of the adapter is the end of its children") {
   }
   CHECK(RealWorld{}.world().clock.tick() - begun < std::chrono::seconds{20});
 }
+
+TEST_CASE("the limits of a child end in signals that are told apart") {
+  auto spins = shell("while true; do :; done");
+  spins.cpu_at_most_s = 1;
+  spins.deadline = Seconds{60};
+  const auto spun = run(spins);
+  CHECK(spun.end == End::signalled);
+  CHECK(spun.code == SIGXCPU);
+  CHECK(death_by(spun.code) == "used more CPU time than it may");
+
+  TempFolder temp;
+  auto writes = shell("exec head -c 100000 /dev/zero > " + (temp.path / "big").string());
+  writes.file_at_most = 5000;
+  const auto wrote = run(writes);
+  CHECK(wrote.end == End::signalled);
+  CHECK(wrote.code == SIGXFSZ);
+  CHECK(std::filesystem::file_size(temp.path / "big") == 5000);
+  CHECK(death_by(wrote.code) == "wrote a larger file than it may");
+  writes.file_at_most = 0;
+  CHECK(run(writes).succeeded());
+
+  CHECK(death_by(SIGSEGV) == "died of signal 11 (Segmentation fault)");
+  CHECK(death_by(SIGSYS) == "asked the system for something that it may not");
+  CHECK(death_by(SIGKILL) == "was killed, perhaps because the machine ran out of memory");
+}
+
+TEST_CASE("a child's descriptors are limited") {
+  auto opens = shell("ulimit -n");
+  opens.descriptors_at_most = 17;
+  CHECK(run(opens).out == "17\n");
+}
+
+TEST_CASE("a disposable child has no environment but its locale, gains nothing, and dies first") {
+  auto request = shell(
+      "env | grep -v '^PWD=\\|^_=\\|^SHLVL=' | sort; grep NoNewPrivs /proc/self/status; "
+      "cat /proc/self/oom_score_adj; ulimit -c");
+  request.disposable = true;
+  CHECK(run(request).out == "LC_ALL=C\nNoNewPrivs:\t1\n500\n0\n");
+  request.disposable = false;
+  CHECK(run(request).out.find("NoNewPrivs:\t0\n") != std::string::npos);
+}

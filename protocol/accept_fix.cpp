@@ -141,11 +141,20 @@ std::optional<double> recent(const SurfaceBlock& block, std::string_view name, d
 }
 
 void take_water(const SurfaceBlock& block, const Limits& limits, model::Surfacing& out) {
-  const auto x = recent(block, "m_water_vx", limits.max_water_age.count());
-  const auto y = recent(block, "m_water_vy", limits.max_water_age.count());
-  if (!x || !y || !(std::hypot(*x, *y) <= kMaxWaterSpeed)) return;
-  out.water = model::LocalVelocity{MetresPerSecond{*x}, MetresPerSecond{*y}};
-  out.water_is_final = block.water == WaterState::complete;
+  const bool complete = block.water == WaterState::complete;
+  const auto take = [&](std::string_view x_name, std::string_view y_name, bool final_value) {
+    const auto x = recent(block, x_name, limits.max_water_age.count());
+    const auto y = recent(block, y_name, limits.max_water_age.count());
+    if (!x || !y || !(std::hypot(*x, *y) <= kMaxWaterSpeed)) return;
+    out.water = model::LocalVelocity{MetresPerSecond{*x}, MetresPerSecond{*y}};
+    out.water_is_final = final_value;
+  };
+  take("m_water_vx", "m_water_vy", complete);
+  // A list of surface sensors without them may have what they are made of. Until it is complete the final one is that of
+  // the dive before.
+  if (block.sensor("m_water_vx") != nullptr || block.sensor("m_water_vy") != nullptr) return;
+  if (complete) take("m_final_water_vx", "m_final_water_vy", true);
+  if (!out.water) take("m_initial_water_vx", "m_initial_water_vy", false);
 }
 
 void take_aim(const SurfaceBlock& block, model::Surfacing& out) {

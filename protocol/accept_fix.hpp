@@ -29,7 +29,8 @@ struct Limits {
 /// They are tried in this order. Duplicates (S4), jumps (S5) and unchanged fixes (S6) need memory and are the pilot's.
 ///
 /// Of the rest of the block only what is meaningful is taken over (slocum.md 1.2, S7): the water velocity when both
-/// components are younger than a segment and not beyond 2.8 m/s (u_max_water_speed); `m_avg_speed` between 0.01 and 3
+/// components are younger than a segment and not beyond 2.8 m/s (u_max_water_speed), of a dialog without m_water_vx/vy the
+/// m_final_water of a completed calculation, else m_initial_water; `m_avg_speed` between 0.01 and 3
 /// m/s; `m_gps_mag_var` and every other sensor only when it was ever updated, except the constants `u_…` and the
 /// commands `c_…`, whose value holds without an age (`c_wpt_lat` and `c_wpt_lon` are 0 then and left out).
 Expected<model::Surfacing, model::Refusal> accept_fix(const SurfaceBlock& block, const Limits& limits);

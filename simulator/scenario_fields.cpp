@@ -1,29 +1,14 @@
 #include "simulator/scenario_draft.hpp"
+#include "simulator/scenario_keys.hpp"
 
 namespace glidehelm::simulator {
+
+using namespace keys;
+
 namespace {
 
-using config::At;
-using config::Effective;
-using config::Fields;
-using config::Range;
-using config::Shape;
-
-Range between(double low, double high) { return {low, high, false}; }
-Range above_zero(double high) { return {0, high, true}; }
-constexpr double kPerMinute = 60, kPerHour = 3600, kDegree = kPi / 180;
-
-Fields<PlaceDraft> place_fields() {
-  Fields<PlaceDraft> f;
-  f.latitude({"lat_deg", "latitude, north positive", true}, &PlaceDraft::lat_deg);
-  f.longitude({"lon_deg", "longitude, east positive", true}, &PlaceDraft::lon_deg);
-  return f;
-}
-
 Fields<GoalDraft> goal_fields() {
-  Fields<GoalDraft> f;
-  f.latitude({"lat_deg", "latitude, north positive", true}, &GoalDraft::lat_deg);
-  f.longitude({"lon_deg", "longitude, east positive", true}, &GoalDraft::lon_deg);
+  auto f = place_fields<GoalDraft>();
   f.number({"radius_m", "distance that counts as arrived"}, &GoalDraft::radius, 1, between(50, 1e5));
   return f;
 }
@@ -44,8 +29,16 @@ Fields<GliderDraft> vehicle_fields() {
   f.number({"glide_angle_deg", "of the path below the horizon"}, &G::glide_angle, kDegree, between(5, 60));
   f.number({"dive_depth_m", "lower turning depth"}, &G::dive_depth, 1, between(5, 6000));
   f.number({"climb_to_m", "upper turning depth of inner yos"}, &G::climb_to, 1, between(0, 6000));
-  f.whole({"current_correction", "u_use_current_correction: 0 ignores currents, 1 uses the last measured"},
-          &G::correction, between(0, 1));
+  f.custom(
+      {"current_correction", "u_use_current_correction: 0 ignores currents, 1 uses the last measured"},
+      Fields<G>::whole_shape(between(0, 1)), std::to_string(G{}.correction),
+      [](const At& at, G& g) {
+        if (at.node.text == "2") return at.complain("not simulated: no source tells its algorithm", "2", "0 or 1");
+        if (const auto v = config::read_whole(at, between(0, 1))) g.correction = static_cast<int>(*v);
+      },
+      [](const G& g, const std::string& path, Effective& out) {
+        out.leaf(path, "current_correction", std::to_string(g.correction));
+      });
   f.number({"heading_bias_deg", "true heading less wanted heading, clockwise"}, &G::heading_bias, kDegree,
            between(-90, 90));
   add_vehicle_keys(f);
@@ -59,15 +52,9 @@ Fields<GliderDraft> schedule_fields() {
   f.number({"stint_jitter_percent", "each stint is drawn within this of stint_h"}, &G::jitter, 0.01, between(0, 50));
   f.number({"cycle_s", "time between two looks at heading and waypoint"}, &G::cycle_s, 1, between(1, 300));
   // The interval of a pilot's schedule: from the fix that is printed to the dive.
-  Shape minutes = Fields<G>::number_shape(between(5, 240));
-  f.custom(
-      {"surface_min", "from the last fix to the dive"}, minutes, "15",
-      [](const At& at, G& g) {
-        if (const auto v = config::read_number(at, between(5, 240))) g.times.surface = *v * kPerMinute;
-      },
-      [](const G& g, const std::string& path, Effective& out) {
-        out.leaf(path, "surface_min", config::yaml_number(g.times.surface, kPerMinute));
-      });
+  Fields<SurfaceTimes> times;
+  times.number({"surface_min", "from the last fix to the dive"}, &SurfaceTimes::surface, kPerMinute, between(5, 240));
+  f.include(&G::times, times);
   return f;
 }
 
@@ -81,7 +68,7 @@ Fields<CallSetup> call_fields() {
   f.word({"reread", "when the script presses Ctrl-F"}, &CallSetup::reread_always,
          std::vector<std::pair<std::string, bool>>{{"always", true}, {"after_transfer", false}});
   f.word({"resume", "when it presses Ctrl-R: at the end of the surface interval, or when it is through"},
-         &CallSetup::resume_at_once, std::vector<std::pair<std::string, bool>>{{"at_end", false}, {"at_once", true}});
+         &CallSetup::resume_at_once, no_or_yes("at_end", "at_once"));
   return f;
 }
 
@@ -120,7 +107,7 @@ Fields<GliderDraft> glider_fields() {
   line.text({"listen", "ADDRESS:PORT that the daemon dials"}, &LineDraft::listen);
   Fields<G> f;
   f.text({"name", "name in its dialog", true}, &G::name, config::kName);
-  f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields());
+  f.part({"start", "where it lies on the surface at the start", true}, &G::start, place_fields<PlaceDraft>());
   f.part({"goal", "where it is meant to go", true}, &G::goal, goal_fields());
   f.text({"initial_list", "goto list on board at the start", false, "the goal alone"}, &G::initial_list);
   f.number({"initial_radius_m", "list_when_wpt_dist of a list that holds the goal alone"}, &G::initial_radius, 1,
@@ -161,7 +148,7 @@ Fields<AnalyticDraft> analytic_fields() {
   Fields<A> f;
   f.text({"kind", "constant, source, sink, solid-body, shear, double-eddy, stuart, tiled, jet or gaussians", true},
          &A::kind);
-  f.part({"origin", "position of x = y = 0", true}, &A::origin_deg, place_fields());
+  f.part({"origin", "position of x = y = 0", true}, &A::origin_deg, place_fields<PlaceDraft>());
   f.number({"length_scale_m", "metres to one unit of x and y"}, &A::length_scale, 1, above_zero(1e7));
   f.number({"speed_scale_m_per_s", "speed to one unit of (u, v)"}, &A::speed_scale, 1, above_zero(5));
   f.maybe_number({"time_scale_s", "seconds to one unit of time", false, "length by speed"}, &A::time_scale, 1,
@@ -175,47 +162,31 @@ Fields<AnalyticDraft> analytic_fields() {
   return f;
 }
 
-template <class Member>
-void strength(Fields<CoastalDraft>& f, const char* name, const char* meaning, Member member, double low, double high) {
-  const CoastalSpec standard;
-  f.custom(
-      {name, meaning}, Fields<CoastalDraft>::number_shape(between(low, high)), config::yaml_number(standard.*member),
-      [member, low, high](const At& at, CoastalDraft& d) {
-        if (const auto v = config::read_number(at, between(low, high))) d.spec.*member = *v;
-      },
-      [member, name](const CoastalDraft& d, const std::string& path, Effective& out) {
-        out.leaf(path, name, config::yaml_number(d.spec.*member));
-      });
-}
-
 Fields<CoastalDraft> coastal_fields() {
   using C = CoastalDraft;
-  Fields<C> area;
-  area.maybe_number({"west_deg", "western edge", true}, &C::west_deg, 1, between(-180, 360));
-  area.maybe_number({"east_deg", "eastern edge, greater than the western", true}, &C::east_deg, 1, between(-180, 540));
-  area.maybe_number({"south_deg", "southern edge", true}, &C::south_deg, 1, between(-85, 85));
-  area.maybe_number({"north_deg", "northern edge", true}, &C::north_deg, 1, between(-85, 85));
   Fields<C> f;
-  f.section({"area", "box of the sea, at most 20° each way", true}, area);
+  f.section({"area", "box of the sea, at most 20° each way", true}, area_fields<C>());
   f.maybe_whole({"seed", "of this sea", false, "the scenario's seed"}, &C::seed, between(0, 9e15));
   f.word({"variant", "what the water does, or what the model says of it"}, &C::variant,
          std::vector<std::pair<std::string, Variant>>{{"truth", Variant::truth}, {"forecast", Variant::forecast}});
   f.part({"from", "start of the straight way that the jets follow (without it the first glider's)"}, &C::from,
-         place_fields());
-  f.part({"to", "end of that way (without it the first glider's goal)"}, &C::to, place_fields());
-  strength(f, "jet_m_per_s", "against the straight way, on it", &CoastalSpec::jet, -3, 3);
-  strength(f, "counter_jet_m_per_s", "along the straight way, beside it", &CoastalSpec::counter_jet, -3, 3);
-  strength(f, "jet_width_km", "half width of both jets", &CoastalSpec::jet_width_km, 0.5, 200);
-  strength(f, "jet_offset_km", "between the jets", &CoastalSpec::jet_offset_km, 0, 500);
-  strength(f, "eddy_m_per_s", "strongest eddy", &CoastalSpec::eddy, 0, 3);
-  strength(f, "tide_m_per_s", "M2, major axis", &CoastalSpec::tide, 0, 3);
-  strength(f, "fading_m", "e-folding depth of jets and eddies; 0: as strong at every depth", &CoastalSpec::fading_m, 0,
-           1e5);
-  strength(f, "shift_km", "by which the truth's eddies are elsewhere", &CoastalSpec::shift_km, 0, 200);
-  strength(f, "tide_lag_deg", "phase of the truth's tide ahead of the forecast's", &CoastalSpec::tide_lag_deg, -360,
-           360);
-  strength(f, "noise_m_per_s", "small eddies that only the truth has", &CoastalSpec::noise, 0, 1);
-  return f;
+         place_fields<PlaceDraft>());
+  f.part({"to", "end of that way (without it the first glider's goal)"}, &C::to, place_fields<PlaceDraft>());
+  Fields<CoastalSpec> sea;
+  sea.number({"jet_m_per_s", "against the straight way, on it"}, &CoastalSpec::jet, 1, between(-3, 3));
+  sea.number({"counter_jet_m_per_s", "along the straight way, beside it"}, &CoastalSpec::counter_jet, 1,
+             between(-3, 3));
+  sea.number({"jet_width_km", "half width of both jets"}, &CoastalSpec::jet_width_km, 1, between(0.5, 200));
+  sea.number({"jet_offset_km", "between the jets"}, &CoastalSpec::jet_offset_km, 1, between(0, 500));
+  sea.number({"eddy_m_per_s", "strongest eddy"}, &CoastalSpec::eddy, 1, between(0, 3));
+  sea.number({"tide_m_per_s", "M2, major axis"}, &CoastalSpec::tide, 1, between(0, 3));
+  sea.number({"fading_m", "e-folding depth of jets and eddies; 0: as strong at every depth"}, &CoastalSpec::fading_m, 1,
+             between(0, 1e5));
+  sea.number({"shift_km", "by which the truth's eddies are elsewhere"}, &CoastalSpec::shift_km, 1, between(0, 200));
+  sea.number({"tide_lag_deg", "phase of the truth's tide ahead of the forecast's"}, &CoastalSpec::tide_lag_deg, 1,
+             between(-360, 360));
+  sea.number({"noise_m_per_s", "small eddies that only the truth has"}, &CoastalSpec::noise, 1, between(0, 1));
+  return f.include(&C::spec, sea);
 }
 
 }  // namespace
@@ -243,7 +214,7 @@ const Fields<ScenarioDraft>& scenario_fields() {
             "needed unless --realtime"},
            &S::clock);
     f.word({"compute_time", "whether the daemon's computing takes simulated time"}, &S::charge_computing,
-           std::vector<std::pair<std::string, bool>>{{"free", false}, {"measured", true}});
+           no_or_yes("free", "measured"));
     f.number({"daemon_wait_s", "how long a missing daemon is waited for"}, &S::daemon_wait_s, 1, between(0, 3600));
     f.part({"truth", "what the water does: one of four keys, and its error", true}, &S::truth, truth);
     f.part({"forecasts", "files that reach a folder while the gliders fly"}, &S::forecasts, forecast_fields());

@@ -1,29 +1,9 @@
 #include "simulator/scenario_draft.hpp"
+#include "simulator/scenario_keys.hpp"
 
 namespace glidehelm::simulator {
-namespace {
 
-using config::At;
-using config::Effective;
-using config::Fields;
-using config::Range;
-using config::Shape;
-
-Range between(double low, double high) { return {low, high, false}; }
-Range above_zero(double high) { return {0, high, true}; }
-
-/// A box of degrees, for any draft with the four edges.
-template <class T>
-Fields<T> area_fields() {
-  Fields<T> area;
-  area.maybe_number({"west_deg", "western edge", true}, &T::west_deg, 1, between(-180, 360));
-  area.maybe_number({"east_deg", "eastern edge, greater than the western", true}, &T::east_deg, 1, between(-180, 540));
-  area.maybe_number({"south_deg", "southern edge", true}, &T::south_deg, 1, between(-85, 85));
-  area.maybe_number({"north_deg", "northern edge", true}, &T::north_deg, 1, between(-85, 85));
-  return area;
-}
-
-}  // namespace
+using namespace keys;
 
 Fields<ErrorDraft> ocean_error_fields() {
   using E = ErrorDraft;
@@ -58,21 +38,10 @@ Fields<ForecastDraft> forecast_fields() {
   f.whole({"keep", "newest files that stay"}, &F::keep, between(1, 1000));
   f.number({"cycle_noise_m_per_s", "root mean square speed of the error that is each cycle's own"},
            &F::cycle_noise_m_per_s, 1, between(0, 2));
-  Shape depths;
-  depths.kind = Shape::Kind::list;
-  depths.parts.push_back(Fields<F>::number_shape(between(0, 11000)));
-  f.custom(
-      {"depths_m", "depth levels, rising; none: the surface alone, without a depth axis"}, depths, "[]",
-      [](const At& at, F& plan) {
-        if (!config::expect_list(at, 0, 200)) return;
-        for (std::size_t i = 0; i < at.node.items.size(); ++i)
-          if (const auto z = config::read_number(at.item(i), between(0, 11000))) plan.grid.depths_m.push_back(*z);
-      },
-      [](const F& plan, const std::string& path, Effective& out) {
-        std::vector<std::string> texts;
-        for (const double z : plan.grid.depths_m) texts.push_back(config::yaml_number(z));
-        out.leaf(path, "depths_m", config::yaml_list(texts));
-      });
+  Fields<ForecastGrid> grid;
+  numbers(grid, {"depths_m", "depth levels, rising; none: the surface alone, without a depth axis"},
+          &ForecastGrid::depths_m, 200, between(0, 11000));
+  f.include(&F::grid, grid);
   return f;
 }
 

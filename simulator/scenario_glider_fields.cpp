@@ -1,34 +1,11 @@
-#include <cmath>
-
 #include "simulator/scenario_draft.hpp"
+#include "simulator/scenario_keys.hpp"
 
 namespace glidehelm::simulator {
+
+using namespace keys;
+
 namespace {
-
-using config::At;
-using config::Effective;
-using config::Fields;
-using config::Range;
-
-Range between(double low, double high) { return {low, high, false}; }
-Range above_zero(double high) { return {0, high, true}; }
-constexpr double kPerHour = 3600, kDegree = kPi / 180, kPercent = 0.01, kCubicCentimetre = 1e-6;
-
-/// A map of keys that fills a member of the glider's draft.
-template <class Inner>
-void part_of(Fields<GliderDraft>& f, const char* name, const char* meaning, Inner FlightDraft::*member,
-             const Fields<Inner>& inner) {
-  f.custom(
-      {name, meaning}, inner.shape(), "",
-      [inner, member](const At& at, GliderDraft& g) {
-        if (config::expect_map(at)) inner.read(at, g.flight.*member);
-      },
-      [inner, member, name](const GliderDraft& g, const std::string& path, Effective& out) {
-        out.open(name);
-        inner.print(g.flight.*member, path.empty() ? name : path + "." + name, out);
-        out.close();
-      });
-}
 
 Fields<Body> body_fields() {
   Fields<Body> f;
@@ -108,116 +85,62 @@ Fields<EnergySpec> energy_fields() {
   return f;
 }
 
-/// A fault of the GPS or of the altimeter as a part of the glider's draft.
-void instrument_fault(Fields<GliderDraft>& f, const char* name, const char* meaning,
-                      FaultPlan& (*which)(FlightDraft&)) {
-  const auto inner = fault_fields();
-  f.custom(
-      {name, meaning}, inner.shape(), "",
-      [inner, which](const At& at, GliderDraft& g) {
-        if (config::expect_map(at)) inner.read(at, which(g.flight));
-      },
-      [inner, which, name](const GliderDraft& g, const std::string& path, Effective& out) {
-        auto flight = g.flight;
-        out.open(name);
-        inner.print(which(flight), path.empty() ? name : path + "." + name, out);
-        out.close();
-      });
-}
-
-/// A key of `vehicle` that stands in the flight draft.
-template <class Member>
-void vehicle_number(Fields<GliderDraft>& f, const char* name, const char* meaning, Member member, double unit,
-                    Range range) {
-  f.custom(
-      {name, meaning}, Fields<GliderDraft>::number_shape(range),
-      config::yaml_number(config::in_unit(FlightDraft{}.*member), unit),
-      [member, unit, range](const At& at, GliderDraft& g) {
-        using V = std::decay_t<decltype(g.flight.*member)>;
-        if (const auto v = config::read_number(at, range)) g.flight.*member = V{*v * unit};
-      },
-      [member, name, unit](const GliderDraft& g, const std::string& path, Effective& out) {
-        out.leaf(path, name, config::yaml_number(config::in_unit(g.flight.*member), unit));
-      });
-}
-
-void vehicle_choice(Fields<GliderDraft>& f, const char* name, const char* meaning, bool FlightDraft::*member,
-                    const std::string& no, const std::string& yes) {
-  f.custom(
-      {name, meaning}, Fields<GliderDraft>::word_shape({no, yes}), no,
-      [member, no, yes](const At& at, GliderDraft& g) {
-        if (const auto word = config::read_word(at, {no, yes})) g.flight.*member = *word == 1;
-      },
-      [member, name, no, yes](const GliderDraft& g, const std::string& path, Effective& out) {
-        out.leaf(path, name, g.flight.*member ? yes : no);
-      });
-}
-
 }  // namespace
 
 void add_vehicle_keys(Fields<GliderDraft>& f) {
   using D = FlightDraft;
-  vehicle_choice(f, "motion",
-                 "point: the two keys above; force_balance: speed and angle of each leg from `body` (Thesis 2.2.3)",
-                 &D::force_balance, "point", "force_balance");
-  part_of(f, "body", "what the force balance takes", &D::body, body_fields());
-  vehicle_number(f, "biofouling_percent_per_day", "of the speed that growth takes each day, from what is left",
-                 &D::fouling_per_day, kPercent, between(0, 20));
-  vehicle_number(f, "target_altitude_m", "height above the floor at which a dive turns; negative: never",
-                 &D::target_altitude, 1, between(-1, 500));
-  vehicle_number(f, "altimeter_range_m", "farther away the floor is not heard", &D::altimeter_range, 1,
-                 between(1, 500));
-  vehicle_choice(
-      f, "speed_estimate",
-      "fixed: believed_speed; depth_rate: measured from depth rate and angle, m_avg_speed is the last dive's",
-      &D::speed_by_depth_rate, "fixed", "depth_rate");
-  vehicle_number(f, "angle_error_deg", "by which the glider takes its path to be steeper (depth_rate)", &D::angle_error,
-                 kDegree, between(-20, 20));
+  Fields<D> d;
+  d.word({"motion", "point: the two keys above; force_balance: speed and angle of each leg from `body` (Thesis 2.2.3)"},
+         &D::force_balance, no_or_yes("point", "force_balance"));
+  d.part({"body", "what the force balance takes"}, &D::body, body_fields());
+  d.number({"biofouling_percent_per_day", "of the speed that growth takes each day, from what is left"},
+           &D::fouling_per_day, kPercent, between(0, 20));
+  d.number({"target_altitude_m", "height above the floor at which a dive turns; negative: never"}, &D::target_altitude,
+           1, between(-1, 500));
+  d.number({"altimeter_range_m", "farther away the floor is not heard"}, &D::altimeter_range, 1, between(1, 500));
+  d.word({"speed_estimate",
+          "fixed: believed_speed; depth_rate: measured from depth rate and angle, m_avg_speed is the last dive's"},
+         &D::speed_by_depth_rate, no_or_yes("fixed", "depth_rate"));
+  d.number({"angle_error_deg", "by which the glider takes its path to be steeper (depth_rate)"}, &D::angle_error,
+           kDegree, between(-20, 20));
+  f.include(&GliderDraft::flight, d);
 }
 
 void add_behaviour_keys(Fields<GliderDraft>& f) {
-  Fields<GliderDraft> wind;
-  vehicle_number(wind, "from_deg", "where it comes from, clockwise from north", &FlightDraft::wind_from, kDegree,
-                 between(0, 360));
-  const auto wind_number = [&](const char* name, const char* meaning, auto member, double unit, Range range) {
-    wind.custom(
-        {name, meaning}, Fields<GliderDraft>::number_shape(range),
-        config::yaml_number(config::in_unit(WindSetup{}.*member), unit),
-        [member, unit, range](const At& at, GliderDraft& g) {
-          using V = std::decay_t<decltype(g.flight.wind.*member)>;
-          if (const auto v = config::read_number(at, range)) g.flight.wind.*member = V{*v * unit};
-        },
-        [member, name, unit](const GliderDraft& g, const std::string& path, Effective& out) {
-          out.leaf(path, name, config::yaml_number(config::in_unit(g.flight.wind.*member), unit));
-        });
-  };
-  wind_number("speed_m_per_s", "mean", &WindSetup::speed, 1, between(0, 60));
-  wind_number("gusts_m_per_s", "standard deviation of each component", &WindSetup::gusts, 1, between(0, 30));
-  wind_number("lasting_h", "e-folding time of the gusts", &WindSetup::lasting_s, kPerHour, between(0.1, 1000));
-  wind_number("leeway_percent", "of the wind with which it drifts", &WindSetup::leeway, kPercent, between(0, 20));
-  part_of(f, "surfacing", "surface behaviours of its mission", &FlightDraft::surfacing, surfacing_fields());
-  part_of(f, "aborts", "what ends the mission, and what follows", &FlightDraft::aborts, abort_fields());
-  part_of(f, "gps", "its receiver", &FlightDraft::gps, gps_fields());
-  f.section({"wind", "adds to the leeway while on the surface"}, wind);
-  part_of(f, "energy", "a simple model of what it draws", &FlightDraft::energy, energy_fields());
+  using D = FlightDraft;
+  Fields<WindSetup> setup;
+  setup.number({"speed_m_per_s", "mean"}, &WindSetup::speed, 1, between(0, 60));
+  setup.number({"gusts_m_per_s", "standard deviation of each component"}, &WindSetup::gusts, 1, between(0, 30));
+  setup.number({"lasting_h", "e-folding time of the gusts"}, &WindSetup::lasting_s, kPerHour, between(0.1, 1000));
+  setup.number({"leeway_percent", "of the wind with which it drifts"}, &WindSetup::leeway, kPercent, between(0, 20));
+  Fields<D> wind;
+  wind.number({"from_deg", "where it comes from, clockwise from north"}, &D::wind_from, kDegree, between(0, 360));
+  wind.include(&D::wind, setup);
+  Fields<D> d;
+  d.part({"surfacing", "surface behaviours of its mission"}, &D::surfacing, surfacing_fields());
+  d.part({"aborts", "what ends the mission, and what follows"}, &D::aborts, abort_fields());
+  d.part({"gps", "its receiver"}, &D::gps, gps_fields());
+  d.section({"wind", "adds to the leeway while on the surface"}, wind);
+  d.part({"energy", "a simple model of what it draws"}, &D::energy, energy_fields());
+  f.include(&GliderDraft::flight, d);
 }
 
 void add_instrument_faults(Fields<GliderDraft>& f) {
-  instrument_fault(f, "stale_fixes", "no fix at all: the older one is printed with its age",
-                   [](FlightDraft& d) -> FaultPlan& { return d.gps.stale; });
-  instrument_fault(f, "invalid_fixes", "the receiver flags the fix: GPS Invalid is new, GPS Location old",
-                   [](FlightDraft& d) -> FaultPlan& { return d.gps.invalid; });
-  instrument_fault(f, "far_fixes", "a fix that looks valid, gps.far_off_m away",
-                   [](FlightDraft& d) -> FaultPlan& { return d.gps.far; });
-  instrument_fault(f, "silent_altimeter", "the next dive does not hear the floor",
-                   [](FlightDraft& d) -> FaultPlan& { return d.altimeter_silent; });
+  using D = FlightDraft;
+  const auto fault = fault_fields();
+  Fields<GpsSetup> gps;
+  gps.part({"stale_fixes", "no fix at all: the older one is printed with its age"}, &GpsSetup::stale, fault);
+  gps.part({"invalid_fixes", "the receiver flags the fix: GPS Invalid is new, GPS Location old"}, &GpsSetup::invalid,
+           fault);
+  gps.part({"far_fixes", "a fix that looks valid, gps.far_off_m away"}, &GpsSetup::far, fault);
+  Fields<D> d;
+  d.include(&D::gps, gps);
+  d.part({"silent_altimeter", "the next dive does not hear the floor"}, &D::altimeter_silent, fault);
+  f.include(&GliderDraft::flight, d);
 }
 
 Fields<SeabedDraft> seabed_fields() {
   using S = SeabedDraft;
-  Fields<PlaceDraft> place;
-  place.latitude({"lat_deg", "latitude, north positive", true}, &PlaceDraft::lat_deg);
-  place.longitude({"lon_deg", "longitude, east positive", true}, &PlaceDraft::lon_deg);
   Fields<S> f;
   f.word({"kind",
           "none; truth: where the true ocean ends below (also under its grid's last level); plane: the keys below"},
@@ -229,7 +152,7 @@ Fields<SeabedDraft> seabed_fields() {
   f.number({"deepens_toward_deg", "in this direction"}, &S::deepens, kDegree, between(0, 360));
   f.number({"hump_m", "height of a bank at the origin"}, &S::hump_height, 1, between(0, 11'000));
   f.number({"hump_radius_m", "standard deviation of its Gaussian shape"}, &S::hump_radius, 1, between(10, 1e6));
-  f.part({"origin", "of slope and bank (without it each glider's start)"}, &S::origin, place);
+  f.part({"origin", "of slope and bank (without it each glider's start)"}, &S::origin, place_fields<PlaceDraft>());
   return f;
 }
 

@@ -83,6 +83,7 @@ class Keys {
   void read(const At& at, void* target) const;
   void print(const void* target, const std::string& path, Effective& out) const;
   [[nodiscard]] std::vector<KeySpec> specs() const;
+  [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
  private:
   std::vector<Entry> entries_;
@@ -267,6 +268,19 @@ class Fields {
         key, inner, [member](const T& t) { return &(t.*member); }, [member](T& t) { return &(t.*member); });
   }
 
+  /// The keys of a member, in the same map: for a map that fills several structs.
+  template <class U, class Owner>
+  Fields& include(U Owner::*member, const Fields<U>& inner) {
+    for (const auto& entry : inner.keys_->entries())
+      keys_->add(
+          {entry.spec,
+           [read = entry.read, member](const At& at, void* target) { read(at, &(static_cast<T*>(target)->*member)); },
+           [print = entry.print, member](const void* t, const std::string& path, Effective& out) {
+             print(&(static_cast<const T*>(t)->*member), path, out);
+           }});
+    return *this;
+  }
+
   /// A list of maps.
   template <class U, class Owner>
   Fields& list(const Key& key, std::vector<U> Owner::*member, const Fields<U>& inner, int at_least) {
@@ -349,6 +363,9 @@ class Fields {
   }
 
  private:
+  template <class U>
+  friend class Fields;
+
   template <class Member>
   Fields& coordinate(const Key& key, Member member, double limit, std::optional<double> (*reader)(const At&)) {
     Range range;

@@ -150,7 +150,7 @@ class Pilot {
   SurfacingSeen seen_;                           ///< the surfacing that is open or was the last
   Learned learned_, in_use_;                     ///< now, and as the current plan began
   Learned told_;                                 ///< as last said to the operator
-  bool contradiction_told_{};
+  bool contradiction_told_{}, unknown_frame_told_{};
   int count_{};  ///< surfacings accepted
   bool arrived_{};
 

@@ -96,6 +96,16 @@ void Pilot::tell_learned() {
                       in_degrees(now.rotation.clockwise), in_degrees(now.rotation.spread), word(now.rotation.from)));
     told_.rotation = now.rotation;
   }
+  // The first surfacing has no Waypoint: line yet; a frame that is still unknown at the second one stays so.
+  const bool unknown = now.rotation.from == FrameRotation::From::assumed_zero;
+  if (unknown && !first && believed_ && !unknown_frame_told_)
+    say(Level::note, "frame",
+        fmt::format(
+            "nothing tells how the glider's frame is turned (no m_gps_mag_var, no Waypoint: line beyond 1 km, no "
+            "vehicle.local_frame_rotation_deg): its measured current is taken for east and north, to within "
+            "{:.0f} deg",
+            in_degrees(now.rotation.spread)));
+  unknown_frame_told_ = unknown && (unknown_frame_told_ || (!first && believed_));
   if (const auto lines = learning_.contradicted(); lines && !contradiction_told_) {
     contradiction_told_ = true;
     say(Level::note, "frame",
@@ -157,7 +167,11 @@ std::string Pilot::compared_with_expected(const model::Surfacing& s) {
 
 /// What the glider measured, as it believes it; marked where nothing is learned from it.
 std::string Pilot::measured_text() const {
-  if (!believed_) return "";
+  if (!believed_) {
+    if (!last_) return "";  // the first one has not dived yet
+    const bool steers_by_it = mission_ && mission_->current_correction == 1;
+    return std::string{", no measured current in the dialog"} + (steers_by_it ? " (aimed as for still water)" : "");
+  }
   std::string text = fmt::format(", measured current {:.2f} m/s towards {:03.0f} deg", believed_->speed().si(),
                                  Course::of(believed_->east.si(), believed_->north.si()).degrees());
   if (!learned_.water)

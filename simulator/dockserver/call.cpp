@@ -4,7 +4,6 @@
 #include <cstdio>
 
 #include "core/base/text.hpp"
-#include "simulator/dockserver/report.hpp"
 
 namespace glidehelm::simulator {
 namespace {
@@ -73,6 +72,7 @@ Report Call::report(double now_s) const {
     r.aborts.mission_number = r.mission_number;
     r.aborts.segment = r.segment;
   }
+  tell_only(setup_.tells, r);
   return r;
 }
 

@@ -6,6 +6,7 @@
 
 #include "simulator/dockserver/dialog_writer.hpp"
 #include "simulator/dockserver/line_faults.hpp"
+#include "simulator/dockserver/report.hpp"
 #include "simulator/dockserver/to_glider.hpp"
 #include "simulator/glider/behaviours.hpp"
 
@@ -22,7 +23,8 @@ struct CallSetup {
   bool reread_always{true};      ///< Ctrl-F at every call, as scripts do; false: only after a goto file was sent
   bool resume_at_once{false};    ///< Ctrl-R as soon as the script is through, not at the end of the scheduled interval
   Firmware firmware{Firmware::g3};
-  int aborts{};  ///< since reset: what the dialog tells of them
+  int aborts{};   ///< since reset: what the dialog tells of them
+  Telling tells;  ///< what the dialog tells of the glider
   friend bool operator==(const CallSetup&, const CallSetup&) = default;
 };
 

@@ -1,5 +1,6 @@
 #include "simulator/dockserver/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace glidehelm::simulator {
@@ -101,6 +102,28 @@ Report report_of(const Glider& g, double now_s, double dives_in_s) {
                               setup.frame.local_bearing_deg(way.departing), now_s - g.navigator().waypoint_since_s()};
   r.dives_in_s = dives_in_s;
   return r;
+}
+
+void tell_only(const Telling& tells, Report& r) {
+  const auto value_of = [&](const std::string& name) {
+    const auto found = std::find_if(r.sensors.begin(), r.sensors.end(), [&](const auto& s) { return s.name == name; });
+    return found == r.sensors.end() ? 0.0 : found->value;
+  };
+  auto left_out = tells.without;
+  if (tells.water_awaited && r.water_measured) {
+    constexpr double kIdeally = -57;  // s: what recorded prompts of that kind say
+    r.water_final = false;
+    r.final_fix_in_s = kIdeally;
+    left_out.insert(left_out.end(), {"m_final_water_vx", "m_final_water_vy"});
+    for (auto& s : r.sensors)
+      if (s.name == "m_water_vx" || s.name == "m_water_vy") s.value = value_of("m_initial_" + s.name.substr(2));
+  }
+  for (auto& s : r.sensors)
+    if (s.name == "m_gps_mag_var") s.value += tells.variation_error.si();
+  std::erase_if(r.sensors, [&](const SensorValue& s) {
+    return std::find(left_out.begin(), left_out.end(), s.name) != left_out.end();
+  });
+  if (!tells.waypoint_line) r.waypoint.reset();
 }
 
 }  // namespace glidehelm::simulator

@@ -42,15 +42,19 @@ void Navigator::dive(GeoPoint at, double, Current measured) {
   used_ = belief_.correction == 0 ? Current{} : measured;
 }
 
+bool Navigator::is_hit(GeoPoint goal) const {
+  if (list_.stop_when == 5) return false;
+  // The geodesic distance never falls below this bound: a far waypoint needs no geodesic.
+  const bool far = distance_lower_bound(lat_, lon_, goal.lat.radians(), goal.lon.radians()) > list_.radius.si();
+  if (list_.stop_when == 15) return far || distance(reckoned(), goal) > list_.radius;
+  return !far && distance(reckoned(), goal) < list_.radius;
+}
+
 void Navigator::hit_all(double now_s) {
   const int count = static_cast<int>(list_.waypoints.size());
   for (int tries = 0; tries < count && !ended_; ++tries) {  // a list inside one radius must not spin for ever
     const auto goal = waypoint();
-    // The geodesic distance never falls below this bound, and a far waypoint cannot be hit.
-    if (list_.stop_when != 7 || list_.start_when != 0 ||
-        distance_lower_bound(lat_, lon_, goal.lat.radians(), goal.lon.radians()) >= list_.radius.si() ||
-        distance(reckoned(), goal) >= list_.radius)
-      return;
+    if (!is_hit(goal)) return;
     ++hits_;
     achieved_ = goal;
     achieved_s_ = now_s;
@@ -65,8 +69,7 @@ void Navigator::hit_all(double now_s) {
 
 Heading Navigator::cycle(double now_s, double dt, std::optional<MetresPerSecond> speed_now) {
   hit_all(now_s);
-  if (!ended_ && list_.start_when == 0)
-    heading_ = aim(geodesic(reckoned(), waypoint()).departing, used_, belief_.speed);
+  if (!ended_) heading_ = aim(geodesic(reckoned(), waypoint()).departing, used_, belief_.speed);
   const double u = speed_now.value_or(belief_.speed).si();
   const auto metric = LocalMetric::at(lat_);
   lat_ += dt * (u * heading_.north() + used_.north.si()) / metric.meridian_radius;

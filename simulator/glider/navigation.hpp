@@ -26,7 +26,8 @@ struct Belief {
 /// After the last waypoint of a list that ends (−2 or N legs) the last heading is held; with end_action 0 `quit()`
 /// tells that the mission is over.
 ///
-/// A list that never starts (start_when other than 0) is not steered to: the last heading is held.
+/// list_stop_when 15 hits where the reckoned distance is *greater* than list_when_wpt_dist, 5 never: the first waypoint is
+/// steered to for ever.
 ///
 /// Works in true directions: the rotated local frame appears only where the dialog prints (frame.hpp). That is exact
 /// because the frame turns bearing, current and heading alike.
@@ -60,6 +61,7 @@ class Navigator {
 
  private:
   [[nodiscard]] int first_target(GeoPoint here) const;
+  [[nodiscard]] bool is_hit(GeoPoint goal) const;
   void hit_all(double now_s);
 
   Belief belief_;

@@ -96,6 +96,26 @@ TEST_CASE("keys are read in their own units") {
   CHECK(g.plan.call.resume_at_once);
 }
 
+TEST_CASE("what the dialog tells of frame and current is set by its keys") {
+  const auto s = read_scenario(kSmall +
+                                   "    dialog: {firmware: g2, without: [m_gps_mag_var, m_vacuum], "
+                                   "mag_var_error_deg: -6, water: awaited, waypoint_line: false}\n",
+                               "s.yaml");
+  REQUIRE(s);
+  const auto& call = s->gliders[0].plan.call;
+  CHECK(call.firmware == simulator::Firmware::g2);
+  CHECK(call.tells == simulator::Telling{{"m_gps_mag_var", "m_vacuum"}, degrees(-6), true, false});
+}
+
+TEST_CASE("a sensor that no dialog prints and a correction that nobody describes are refused by name") {
+  CHECK(errors_of(kSmall + "    dialog: {without: [m_gps_magvar]}\n").find("m_gps_mag_var") != std::string::npos);
+  const auto two = errors_of(kSmall + "    vehicle: {current_correction: 2}\n");
+  CHECK(two ==
+        "/x/s.yaml:9:35: gliders[0].vehicle.current_correction: not simulated: no source tells its algorithm; found 2; "
+        "allowed: 0 or 1\n");
+  CHECK(errors_of(kSmall + "    vehicle: {current_correction: 3}\n").find("0 to 1") != std::string::npos);
+}
+
 TEST_CASE("a made-up sea takes ends and seed from the scenario unless it has its own") {
   const auto text = with(
       "{still: true}", "{coastal: {area: {west_deg: 4, east_deg: 6, south_deg: 39, north_deg: 41}, jet_m_per_s: 0.2}}");

@@ -123,7 +123,7 @@ TEST_CASE("a bad list ends the mission and is counted") {
   run(sim);
   CHECK(sim.result(0).end == RunEnd::behaviour_error);
   CHECK(sim.result(0).behaviour_errors == 1);
-  CHECK(sim.result(0).reason == "bad goto list after Ctrl-F, line 3: unknown b_arg nonsense");
+  CHECK(sim.result(0).reason == "bad goto list after Ctrl-F, line 3, column 8: unknown b_arg nonsense");
 }
 
 TEST_CASE("faults strike the surfacings that they name, and by chance as often as they should") {

@@ -11,6 +11,26 @@ namespace glidehelm::test {
 
 using FlownMission = cli::RehearsalFlight;
 
+/// A glider `sim01` that flies from one place to another by method `direct` from `start` on, with files that go unasked.
+inline FlownMission::Setup leg_setup(GeoPoint from, GeoPoint goal, int correction, Instant start) {
+  FlownMission::Setup s;
+  s.mission.name = "leg";
+  s.mission.glider = "sim01";
+  s.mission.goal = goal;
+  s.mission.method = "direct";
+  s.mission.approval = mission::Approval::automatic;
+  s.mission.current_correction = correction;
+  s.glider.setup.start = from;
+  s.glider.setup.start_s = epoch_seconds(start);
+  s.glider.setup.belief.correction = correction;
+  s.glider.setup.list.waypoints = {goal};
+  s.glider.setup.list.radius = Metres{500};
+  s.glider.setup.list.initial = 0;
+  s.glider.goal = goal;
+  s.glider.goal_radius = Metres{2000};
+  return s;
+}
+
 /// A forecast on a 0.02° grid, sampled from analytic fields at `start` over a box around two places: a grid has the fast kernel.
 inline std::shared_ptr<const daemon::OceanSource> gridded_forecast(const std::vector<ocean::AnalyticSpec>& specs,
                                                                    GeoPoint from, GeoPoint to, Instant start) {

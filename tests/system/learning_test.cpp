@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
@@ -6,6 +7,7 @@
 #include "core/base/utc.hpp"
 #include "core/mission/estimate.hpp"
 #include "tests/support/flown_mission.hpp"
+#include "tests/support/random_sea.hpp"
 
 using namespace glidehelm;
 using test::FlownMission;
@@ -14,52 +16,8 @@ namespace {
 
 const Instant kStart = *utc_from_text("2026-03-01T00:00:00Z");
 
-struct Dice {
-  std::uint64_t state;
-  double roll() {
-    state ^= state >> 12;
-    state ^= state << 25;
-    state ^= state >> 27;
-    return static_cast<double>((state * 2685821657736338717ULL) >> 11) * 0x1p-53;
-  }
-  double between(double a, double b) { return a + (b - a) * roll(); }
-};
-
-/// A mean current and fourteen eddies within 90 km, each as fast as `speed` at its ring.
-std::vector<ocean::AnalyticSpec> sea(Dice dice, GeoPoint origin, double speed, double east, double north) {
-  ocean::AnalyticSpec hills, mean;
-  hills.kind = "gaussians";
-  mean.kind = "constant";
-  hills.origin = mean.origin = origin;
-  hills.length_scale = Metres{1000};
-  hills.speed_scale = MetresPerSecond{1};
-  for (int i = 0; i < 14; ++i) {
-    const double s = dice.between(12, 28);  // km; |grad| of w·N is w/(2π s³)·e^(−1/2) at r = s
-    const double w =
-        (dice.roll() < 0.5 ? -1 : 1) * dice.between(0.5, 1.0) * speed * 2 * kPi * s * s * s / std::exp(-0.5);
-    hills.gaussians.push_back({w, dice.between(-90, 90), dice.between(-90, 90), s * s, 0, s * s, 0, 0});
-  }
-  mean.params = {{"u", east}, {"v", north}};
-  return {hills, mean};
-}
-
 FlownMission::Setup setup(GeoPoint from, GeoPoint goal, int correction) {
-  FlownMission::Setup s;
-  s.mission.name = "leg";
-  s.mission.glider = "sim01";
-  s.mission.goal = goal;
-  s.mission.method = "direct";
-  s.mission.approval = mission::Approval::automatic;
-  s.mission.current_correction = correction;
-  s.glider.setup.start = from;
-  s.glider.setup.start_s = epoch_seconds(kStart);
-  s.glider.setup.belief.correction = correction;
-  s.glider.setup.list.waypoints = {goal};
-  s.glider.setup.list.radius = Metres{500};
-  s.glider.setup.list.initial = 0;
-  s.glider.goal = goal;
-  s.glider.goal_radius = Metres{2000};
-  return s;
+  return test::leg_setup(from, goal, correction, kStart);
 }
 
 struct DacError {
@@ -94,102 +52,121 @@ DacError worst_dac(const FlownMission& flown) {
   return worst;
 }
 
+/// How often the pilot said a text with these words.
+int said(const FlownMission& flown, const std::string& words) {
+  int count = 0;
+  for (const auto& effects : flown.effects())
+    for (const auto& effect : effects)
+      if (const auto* say = std::get_if<mission::Say>(&effect))
+        count += say->text.find(words) != std::string::npos ? 1 : 0;
+  return count;
+}
+
 }  // namespace
 
 TEST_CASE(
     "in a frame turned by 10 degrees the current that the daemon uses is right to 1 degree and 2 % at the third "
-    "surfacing") {
-  // What the dialog tells: the variation as it is; none, so that only the Waypoint: lines are left; or one that is off by
-  // 6°, which the lines overrule. The floor of a printed bearing costs up to 0.5°, the median of several less.
-  struct Case {
+    "surfacing, however it learns the frame; untreated it is wrong by all of it") {
+  struct Way {
     const char* what;
-    std::function<void(model::Surfacing&)> heard_as;
+    simulator::Telling tells;
+    bool configured{};
+    std::optional<Radians> as_if{};  ///< the switch: what the daemon is told whatever is true
+    mission::FrameRotation::From from{};
   };
-  const std::array<Case, 3> cases{Case{"m_gps_mag_var printed", {}},
-                                  Case{"no m_gps_mag_var", [](model::Surfacing& s) { s.magnetic_variation.reset(); }},
-                                  Case{"m_gps_mag_var off by 6 deg", [](model::Surfacing& s) {
-                                         if (s.magnetic_variation) *s.magnetic_variation += degrees(6);
-                                       }}};
+  using From = mission::FrameRotation::From;
+  const std::vector<std::string> silent{"m_gps_mag_var"};
+  // The floor of a printed bearing costs up to 0.5°, the median of several less; the variation itself is exact here.
+  const std::array<Way, 6> ways{
+      Way{"configured", {silent, {}, false, false}, true, {}, From::configured},
+      {"m_gps_mag_var", {{}, {}, false, false}, false, {}, From::magnetic_variation},
+      {"Waypoint: lines", {silent, {}, false, true}, false, {}, From::waypoint_lines},
+      {"lines against m_gps_mag_var off by 6 deg", {{}, degrees(6), false, true}, false, {}, From::waypoint_lines},
+      {"none of them", {silent, {}, false, false}, false, {}, From::assumed_zero},
+      {"untreated (configured as 0)", {}, false, Radians{0}, From::configured}};
   const auto from = geo_point(40.4, 4.1), goal = geo_point(41.3, 5.2);
-  const auto forecast = test::gridded_forecast(sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from, goal, kStart);
+  const auto forecast =
+      test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from, goal, kStart);
   const chart::Chart open_ocean;
-  for (const double rotation : {10.0, -10.0}) {
-    const auto fly = [&](const Case& c, std::optional<Radians> configured) {
+  std::cout << "frame turned by    learned from                                worst direction   worst size\n";
+  for (const double rotation : {10.0, -10.0})
+    for (const auto& way : ways) {
       auto s = setup(from, goal, 1);
-      s.mission.frame_rotation = configured;
+      s.mission.frame_rotation = way.configured ? std::optional{degrees(rotation)} : way.as_if;
       s.glider.setup.frame.rotation = degrees(rotation);
-      s.heard_as = c.heard_as;
+      s.glider.call.tells = way.tells;
       s.end.surfacings = 7;
       FlownMission flown{s, forecast, forecast->forecast.ocean(), open_ocean};
       flown.fly();
-      return worst_dac(flown);
-    };
-    for (const auto& c : cases) {
-      const auto error = fly(c, std::nullopt);
-      std::cout << "rotation " << rotation << " deg, " << c.what << ": " << error.degrees << " deg, " << error.percent
-                << " %\n";
-      CAPTURE(rotation, c.what);
-      CHECK(error.degrees < 1.0);
+      const auto error = worst_dac(flown);
+      std::cout << fmt::format("{:+8.0f} deg       {:42}  {:9.2f} deg  {:9.2f} %\n", rotation, way.what, error.degrees,
+                               error.percent);
+      CAPTURE(rotation, way.what);
+      CHECK(flown.pilot().learned().rotation.from == way.from);
       CHECK(error.percent < 2.0);
+      const bool known = way.from != From::assumed_zero && !way.as_if;
+      if (known)
+        CHECK(error.degrees < 1.0);
+      else
+        CHECK(error.degrees == Approx(10.0).margin(0.5));
+      // Who knows nothing says so, once.
+      CHECK(said(flown, "nothing tells how the glider's frame is turned") == (way.from == From::assumed_zero ? 1 : 0));
+      // Who is told something that the lines deny says that.
+      CHECK(said(flown, "the Waypoint: lines say that the frame is turned") == (way.as_if ? 1 : 0));
     }
-    // The switch: the frame taken for east and north.
-    const auto untreated = fly(cases[0], Radians{0});
-    std::cout << "rotation " << rotation << " deg, untreated: " << untreated.degrees << " deg, " << untreated.percent
-              << " %\n";
-    CHECK(untreated.degrees == Approx(10.0).margin(0.5));
-  }
 }
 
-TEST_CASE("where truth is the forecast 200 stints in currents up to 3 U end within 3 % of their length from the plan") {
-  for (const int correction : {1, 0}) {
-    std::vector<double> errors, by_drift, by_dive;
-    int seas = 0, strong = 0;
-    double fastest = 0;
-    for (std::uint64_t seed = 1; errors.size() < 200 && seed < 60; ++seed) {
-      Dice dice{seed * 104729 + static_cast<std::uint64_t>(correction)};
-      for (int i = 0; i < 8; ++i) static_cast<void>(dice.roll());
-      const double c = dice.between(0, 0.8), towards = dice.between(0, 2 * kPi), way = dice.between(0, 2 * kPi);
-      const auto from = geo_point(40.75, 4.45), goal = destination(from, Bearing{Radians{way}}, Metres{70'000});
-      const auto forecast = test::gridded_forecast(sea(dice, from, 0.10, c * std::sin(towards), c * std::cos(towards)),
-                                                   geo_point(40, 3.4), geo_point(41.5, 5.5), kStart);
-      const chart::Chart open_ocean;
-      auto s = setup(from, goal, correction);
-      s.mission.horizon = Seconds{36 * 3600.0};
-      s.glider.setup.stint_s = 4 * 3600.0;
-      s.glider.setup.prior_water =
-          Current{MetresPerSecond{c * std::sin(towards)}, MetresPerSecond{c * std::cos(towards)}};
-      s.end.surfacings = 7;
-      FlownMission flown{s, forecast, forecast->forecast.ocean(), open_ocean};
-      flown.fly();
-      ++seas;
-      const auto& dives = flown.simulation().dives(0);
-      const auto& promised = flown.surfacings();
-      if (flown.plans().size() + 1 < promised.size()) continue;  // a surfacing without a file flies no plan
-      for (std::size_t j = 1; j < promised.size() && j - 1 < dives.size() && errors.size() < 200; ++j) {
-        const auto& plan = flown.plans()[j - 1];
-        if (!promised[j].promised || plan.stints.empty() || plan.stints.front().arrives) continue;
-        const auto& dive = dives[j - 1];
-        // The fix is a minute later than the surfacing: up to 60 m of drift that no plan is to blame for.
-        const double length = 0.30 * 4 * 3600, error = distance(dive.surface, *promised[j].promised).si();
-        const auto shift = geodesic(plan.stints.front().dive, dive.dive);
-        const auto promised_then = destination(*promised[j].promised, shift.departing, shift.length);
-        errors.push_back(100 * error / length);
-        by_drift.push_back(100 * shift.length.si() / length);
-        by_dive.push_back(100 * distance(dive.surface, promised_then).si() / length);
-        fastest = std::max(fastest, dive.truth.water.speed().si());
-        strong += dive.truth.water.speed().si() > 0.30 ? 1 : 0;
-      }
+TEST_CASE("a current of which only the initial or only the final value is told is used within the same limits") {
+  struct Way {
+    const char* what;
+    simulator::Telling tells;
+    bool final_value{}, told{true};
+  };
+  const std::array<Way, 5> ways{
+      Way{"the final one awaited", {{}, {}, true}, false},
+      {"m_initial_water alone",
+       {{"m_water_vx", "m_water_vy", "m_final_water_vx", "m_final_water_vy"}, {}, false},
+       false},
+      {"m_final_water alone",
+       {{"m_water_vx", "m_water_vy", "m_initial_water_vx", "m_initial_water_vy"}, {}, false},
+       true},
+      {"m_water alone",
+       {{"m_initial_water_vx", "m_initial_water_vy", "m_final_water_vx", "m_final_water_vy"}, {}, false},
+       true},
+      {"none",
+       {{"m_water_vx", "m_water_vy", "m_initial_water_vx", "m_initial_water_vy", "m_final_water_vx",
+         "m_final_water_vy"},
+        {},
+        false},
+       false,
+       false}};
+  const auto from = geo_point(40.4, 4.1), goal = geo_point(41.3, 5.2);
+  const auto forecast =
+      test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from, goal, kStart);
+  const chart::Chart open_ocean;
+  for (const auto& way : ways) {
+    auto s = setup(from, goal, 1);
+    s.glider.setup.frame.rotation = degrees(10);
+    s.glider.call.tells = way.tells;
+    s.end.surfacings = 7;
+    FlownMission flown{s, forecast, forecast->forecast.ocean(), open_ocean};
+    flown.fly();
+    CAPTURE(way.what);
+    CHECK(flown.refusals().empty());
+    const auto& water = flown.pilot().learned().water;
+    CHECK(water.has_value() == way.told);
+    if (!way.told) {
+      // Six surfacings have dived before; each says what is missing and what follows.
+      CHECK(said(flown, "no measured current in the dialog (aimed as for still water)") == 6);
+      continue;
     }
-    const auto worst = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()); };
-    std::cout << "correction " << correction << ": " << errors.size() << " stints in " << seas << " seas, " << strong
-              << " of them in more than U, fastest " << fastest / 0.30 << " U; off by " << mission::median_of(errors)
-              << " % in the median, " << worst(errors) << " % at worst; of it the dive place "
-              << mission::median_of(by_drift) << " / " << worst(by_drift) << " %, the dive itself "
-              << mission::median_of(by_dive) << " / " << worst(by_dive) << " %\n";
-    CHECK(errors.size() == 200);
-    CHECK(worst(errors) < 3.0);
-    CHECK(fastest > 0.80);
-    CHECK(strong > 80);
+    CHECK(water->final_value == way.final_value);
+    CHECK(said(flown, "(initial)") >= (way.final_value ? 0 : 5));
+    // The initial one takes the first fix, 25 s after the surfacing, for the surfacing: with 0.2 m/s 5 m in four hours.
+    const auto error = worst_dac(flown);
+    std::cout << way.what << ": " << error.degrees << " deg, " << error.percent << " %\n";
+    CHECK(error.degrees < 1.0);
+    CHECK(error.percent < 2.0);
   }
 }
 
@@ -197,7 +174,8 @@ TEST_CASE(
     "a glider that is slower than configured and steers 6 degrees off is foreseen better from surfacing to surfacing") {
   // Correction 1: what it believes of the current holds its own errors, so the first plans are wrong by a tenth of the way.
   const auto from = geo_point(40.3, 4.0), goal = geo_point(41.5, 5.6);
-  const auto forecast = test::gridded_forecast(sea({5}, geo_point(40.8, 4.6), 0.08, 0.03, 0.05), from, goal, kStart);
+  const auto forecast =
+      test::gridded_forecast(test::random_sea({5}, geo_point(40.8, 4.6), 0.08, 0.03, 0.05), from, goal, kStart);
   const chart::Chart open_ocean;
   auto s = setup(from, goal, 1);
   s.mission.frame_rotation = Radians{0};

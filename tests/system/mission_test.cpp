@@ -5,6 +5,7 @@
 #include "core/base/utc.hpp"
 #include "daemon/event_json.hpp"
 #include "tests/support/flown_mission.hpp"
+#include "tests/support/random_sea.hpp"
 
 using namespace glidehelm;
 using test::FlownMission;
@@ -13,65 +14,23 @@ namespace {
 
 const Instant kStart = *utc_from_text("2026-03-01T00:00:00Z");
 
-/// Numbers from 0 to 1, the same on every machine (xorshift64*).
-struct Dice {
-  std::uint64_t state;
-  double roll() {
-    state ^= state >> 12;
-    state ^= state << 25;
-    state ^= state >> 27;
-    return static_cast<double>((state * 2685821657736338717ULL) >> 11) * 0x1p-53;
-  }
-  double between(double a, double b) { return a + (b - a) * roll(); }
-};
-
 /// Seas of the lost-call study: a few in the quick tests, 50 with GLIDEHELM_SEAS=50 (scripts/campaign seas).
 std::uint64_t seas_wanted() {
   const char* wanted = std::getenv("GLIDEHELM_SEAS");
   return wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 6;
 }
 
-/// A sea of eddies around the way, fastest about `speed` m/s each (Thesis 5.6).
 std::vector<ocean::AnalyticSpec> eddies(std::uint64_t seed, GeoPoint origin, double speed, double mean_east,
                                         double mean_north) {
-  Dice dice{seed * 7919 + 12345};
-  ocean::AnalyticSpec hills;
-  hills.kind = "gaussians";
-  hills.origin = origin;
-  hills.length_scale = Metres{1000};
-  hills.speed_scale = MetresPerSecond{1};
-  for (int i = 0; i < 14; ++i) {
-    const double s = dice.between(12, 28);  // km; the ring of fastest flow lies at s
-    // |grad| of w·N is w/(2π s³)·e^(−1/2) at r = s.
-    const double w =
-        (dice.roll() < 0.5 ? -1 : 1) * dice.between(0.5, 1.0) * speed * 2 * kPi * s * s * s / std::exp(-0.5);
-    hills.gaussians.push_back({w, dice.between(-90, 90), dice.between(-90, 90), s * s, 0, s * s, 0, 0});
-  }
-  ocean::AnalyticSpec mean;
-  mean.kind = "constant";
-  mean.origin = origin;
-  mean.params = {{"u", mean_east}, {"v", mean_north}};
-  return {hills, mean};
+  return test::random_sea({seed * 7919 + 12345}, origin, speed, mean_east, mean_north);
 }
 
 FlownMission::Setup setup(GeoPoint from, GeoPoint goal, int correction) {
-  FlownMission::Setup s;
-  s.mission.name = "leg";
-  s.mission.glider = "sim01";
-  s.mission.goal = goal;
-  s.mission.approval = mission::Approval::automatic;
+  auto s = test::leg_setup(from, goal, correction, kStart);
+  s.mission.method = FlownMission::Setup{}.mission.method;
   s.mission.frame_rotation = Radians{0};
   s.mission.cell = Metres{4000};
-  s.mission.current_correction = correction;
-  s.glider.setup.start = from;
-  s.glider.setup.start_s = epoch_seconds(kStart);
-  s.glider.setup.belief.correction = correction;
   s.glider.setup.cycle_s = 20;
-  s.glider.setup.list.waypoints = {goal};
-  s.glider.setup.list.radius = Metres{500};
-  s.glider.setup.list.initial = 0;
-  s.glider.goal = goal;
-  s.glider.goal_radius = Metres{2000};
   return s;
 }
 
@@ -152,7 +111,7 @@ TEST_CASE("without a file for five surfacings at most 1 % of the dives head more
     int dives = 0, backwards = 0, seas = 0;
     double progress_kept = 0, progress_lost = 0;
     for (std::uint64_t seed = 1; seed <= seas_wanted(); ++seed) {
-      Dice dice{seed * 104729};
+      test::Dice dice{seed * 104729};
       const auto from = geo_point(40.4, 4.1), goal = geo_point(41.1, 4.8);
       const auto forecast = test::gridded_forecast(
           eddies(seed, geo_point(40.75, 4.45), 0.15, dice.between(-0.05, 0.05), dice.between(-0.05, 0.05)), from, goal,

@@ -292,3 +292,31 @@ TEST_CASE("effective values carry their origin and read back to the same") {
   CHECK(again.thing.angle == r.thing.angle);
   CHECK(again.thing.inner.label == "on");
 }
+
+TEST_CASE("keys of one map may fill several structs") {
+  struct Outer {
+    Thing thing;
+    int own{4};
+  };
+  Fields<Thing> names;
+  names.text({"name", "a name", true}, &Thing::name);
+  Fields<Outer> f;
+  f.include(&Outer::thing, names).whole({"own", "its own"}, &Outer::own, from_to(0, 9));
+  const auto document = read_yaml("name: x\nown: 7\n", "t.yaml");
+  Reading reading{"t.yaml"};
+  Outer outer;
+  f.read(At{document.root, nullptr, "", reading}, outer);
+  CHECK(reading.problems.empty());
+  CHECK(outer.thing.name == "x");
+  CHECK(outer.own == 7);
+  Effective effective{&reading};
+  f.print(outer, "", effective);
+  CHECK(effective.text().find("name: x") == 0);
+  const auto keys = f.shape().keys;
+  REQUIRE(keys.size() == 2);
+  CHECK(keys[0].required);
+  const auto wrong = read_yaml("nam: x\n", "t.yaml");
+  Reading again{"t.yaml"};
+  f.read(At{wrong.root, nullptr, "", again}, outer);
+  CHECK(again.problems.sorted().size() == 2);  // the key unknown, with its nearest, and the required one missing
+}

@@ -8,6 +8,8 @@
 using namespace glidehelm;
 using namespace glidehelm::test;
 using simulator::Glider;
+using simulator::kDialogSensors;
+using simulator::tell_only;
 
 namespace {
 
@@ -72,4 +74,41 @@ TEST_CASE("a glider whose list has ended says that its heading is idle") {
   REQUIRE_FALSE(g.dive(g.fix_s() + 900).accident);
   const auto r = report_of(g, g.surfaced_s(), 0);
   CHECK(r.start_when == 3.0);
+}
+
+TEST_CASE("a dialog leaves out sensors and the waypoint, and tells a variation that is off") {
+  Glider g{setup(), {kUniform, kUniform}, kOpen};
+  REQUIRE_FALSE(g.take_fixes());
+  REQUIRE_FALSE(g.dive(g.fix_s() + 900).accident);
+  REQUIRE_FALSE(g.take_fixes());
+  const auto all = report_of(g, g.fix_s() + 45, 700);
+  auto some = all;
+  tell_only({}, some);
+  REQUIRE(some.sensors.size() == all.sensors.size());
+  for (std::size_t i = 0; i < all.sensors.size(); ++i) {
+    CHECK(some.sensors[i].name == kDialogSensors.at(i));
+    CHECK(some.sensors[i].value == all.sensors[i].value);
+  }
+  CHECK(some.waypoint);
+  tell_only({{"m_vacuum"}, degrees(6), false, false}, some);
+  CHECK(find(some, "m_vacuum") == nullptr);
+  CHECK(find(some, "m_gps_mag_var")->value == Approx(degrees(-1.5).si()).epsilon(1e-12));
+  CHECK_FALSE(some.waypoint);
+}
+
+TEST_CASE("while the final current is awaited the initial one is printed for it") {
+  Glider g{setup(), {kUniform, kUniform}, kOpen};
+  REQUIRE_FALSE(g.take_fixes());
+  REQUIRE_FALSE(g.dive(g.fix_s() + 900).accident);
+  REQUIRE_FALSE(g.take_fixes());
+  const auto all = report_of(g, g.fix_s() + 45, 700);
+  REQUIRE(find(all, "m_water_vx")->value != find(all, "m_initial_water_vx")->value);
+  auto r = all;
+  tell_only({{}, {}, true, true}, r);
+  CHECK_FALSE(r.water_final);
+  CHECK(find(r, "m_water_vx")->value == find(all, "m_initial_water_vx")->value);
+  CHECK(find(r, "m_water_vy")->value == find(all, "m_initial_water_vy")->value);
+  CHECK(find(r, "m_final_water_vx") == nullptr);
+  const auto block = simulator::dialog::at_surface_block(r);
+  CHECK(block.find("Water Velocity Calculations waiting for final gps fix(ideally -57 secs)") != std::string::npos);
 }

@@ -69,29 +69,47 @@ TEST_CASE("the sign of zero degrees survives") {
 }
 
 TEST_CASE("what the firmware would take for a bad b_arg is a behaviour error that names its line") {
-  CHECK(error_of(file("b_arg: radius(m) 100\n", "1.0 2.0\n")) == "line 4: unknown b_arg radius");
-  CHECK(error_of(file("b_arg: num_legs_to_run(nodim) 0\n", "1.0 2.0\n")) == "line 4: b_arg num_legs_to_run is 0");
+  CHECK(error_of(file("b_arg: radius(m) 100\n", "1.0 2.0\n")) == "line 4, column 8: unknown b_arg radius");
+  CHECK(error_of(file("b_arg: num_legs_to_run(nodim) 0\n", "1.0 2.0\n")) ==
+        "line 4, column 31: b_arg num_legs_to_run is 0");
   CHECK(error_of(file("b_arg: num_legs_to_run(nodim) -3\n", "1.0 2.0\n")).find("line 4") == 0);
   CHECK(error_of(file("b_arg: list_when_wpt_dist(m) 9.9\n", "1.0 2.0\n")).find("below 10") != std::string::npos);
   CHECK(error_of(file("b_arg: end_action(enum) 3\n", "1.0 2.0\n")).find("end_action") != std::string::npos);
   CHECK(error_of(file("b_arg: initial_wpt(enum) 0\nb_arg: initial_wpt(enum) 0\n", "1.0 2.0\n")) ==
-        "line 5: b_arg initial_wpt is given twice");
+        "line 5, column 8: b_arg initial_wpt is given twice");
   CHECK(error_of(file("b_arg: initial_wpt(enum) 1\n", "1.0 2.0\n")).find("beyond the list") != std::string::npos);
   CHECK(error_of(file("b_arg: initial_wpt(enum) nan\n", "1.0 2.0\n")).find("no number") != std::string::npos);
 }
 
 TEST_CASE("enums take the values that the masterdata allow and no others") {
-  for (const int allowed : {0, 1, 2, 4})
-    CHECK(read_goto_list(file("b_arg: start_when(enum) " + std::to_string(allowed) + "\n", "1.0 2.0\n")));
-  for (const int allowed : {1, 2, 5, 7, 15})
-    CHECK(read_goto_list(file("b_arg: list_stop_when(enum) " + std::to_string(allowed) + "\n", "1.0 2.0\n")));
-  CHECK(error_of(file("b_arg: start_when(enum) 3\n", "1.0 2.0\n")) == "line 4: b_arg start_when is none of 0, 1, 2, 4");
+  for (const int flown : {5, 7, 15}) {
+    const auto list = read_goto_list(file("b_arg: list_stop_when(enum) " + std::to_string(flown) + "\n", "1.0 2.0\n"));
+    REQUIRE(list);
+    CHECK(list->stop_when == flown);
+  }
+  CHECK(read_goto_list(file("b_arg: start_when(enum) 0\n", "1.0 2.0\n")));
+  CHECK(error_of(file("b_arg: start_when(enum) 3\n", "1.0 2.0\n")) ==
+        "line 4, column 25: b_arg start_when is none of 0, 1, 2, 4");
   CHECK(error_of(file("b_arg: list_stop_when(enum) 12\n", "1.0 2.0\n")) ==
-        "line 4: b_arg list_stop_when is none of 1, 2, 5, 7, 15");
+        "line 4, column 29: b_arg list_stop_when is none of 1, 2, 5, 7, 15");
   CHECK(
       read_goto_list(file("b_arg: primary_wpt(enum) 0\nb_arg: primary_stop_when(enum) 15\n"
                           "b_arg: primary_when_wpt_dist(m) 10\n",
                           "1.0 2.0\n")));
+}
+
+TEST_CASE("what a glider may do and no source tells how is refused by its name, with line and column") {
+  const auto refusal = [](const std::string& b_args) { return error_of(file(b_args, "1.0 2.0\n")); };
+  CHECK(refusal("b_arg: start_when(enum) 1\n") == "line 4, column 25: start_when 1 (STK_IDLE) is not simulated");
+  CHECK(refusal("b_arg: start_when(enum) 2\n") == "line 4, column 25: start_when 2 (PITCH_IDLE) is not simulated");
+  CHECK(refusal("\tb_arg: start_when(enum)  4\n") == "line 4, column 27: start_when 4 (UPDWN_IDLE) is not simulated");
+  CHECK(refusal("b_arg: list_stop_when(enum) 1\n") ==
+        "line 4, column 29: list_stop_when 1 (STK_IDLE) is not simulated");
+  CHECK(refusal("b_arg: list_stop_when(enum) 2 # idle\n") ==
+        "line 4, column 29: list_stop_when 2 (PITCH_IDLE) is not simulated");
+  CHECK(refusal("b_arg: primary_wpt(enum) 1\n") == "line 4, column 26: primary_wpt 1 is not simulated");
+  CHECK(refusal("b_arg: primary_stop_when(enum) 17\n") ==
+        "line 4, column 32: primary_stop_when 17 (PRIMARY_WPT within) is not simulated");
 }
 
 TEST_CASE("what is no list of at most eight positions is a behaviour error") {
@@ -99,14 +117,14 @@ TEST_CASE("what is no list of at most eight positions is a behaviour error") {
   CHECK(error_of(file("", "")).find("no waypoint") != std::string::npos);
   std::string nine;
   for (int i = 0; i < 9; ++i) nine += "100.5 200.5\n";
-  CHECK(error_of(file("", nine)) == "line 14: more than 8 waypoints");
+  CHECK(error_of(file("", nine)) == "line 14, column 1: more than 8 waypoints");
   CHECK(error_of(file("", "1160.0 4439.3\n")).find("not a position") != std::string::npos);
   CHECK(error_of(file("", "1100.0 9000.1\n")).find("not a position") != std::string::npos);
   CHECK(error_of(file("", "1100.0\n")).find("two numbers") != std::string::npos);
   CHECK(error_of(file("", "1100.0 4439.3 5.0\n")).find("text after") != std::string::npos);
   CHECK(error_of(file("", "1100.0 4439.3 | Tofino\n")).find("text after") != std::string::npos);
   CHECK(error_of("behavior_name=yo\n<start:waypoints>\n1 2\n<end:waypoints>\n") ==
-        "line 1: behavior_name is not goto_list");
+        "line 1, column 1: behavior_name is not goto_list");
   CHECK(error_of("behavior_name=goto_list\n<start:waypoints>\n1 2\n").find("ends inside") != std::string::npos);
 }
 

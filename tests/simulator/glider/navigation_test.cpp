@@ -171,7 +171,7 @@ TEST_CASE("a re-read list starts again at its initial waypoint, though that was 
   CHECK(std::fabs(nav.cycle(4000, 4).degrees() - 180) < 0.1);
 }
 
-TEST_CASE("only list_stop_when 7 hits waypoints") {
+TEST_CASE("with list_stop_when 5 no waypoint is ever hit") {
   Navigator nav{Belief{MetresPerSecond{0.5}, 0}};
   auto list = list_of({destination(kHome, Bearing{}, Metres{200})}, 100);
   list.stop_when = 5;
@@ -202,14 +202,27 @@ TEST_CASE(
   CHECK(nav.target() == 0);
 }
 
-TEST_CASE("a list whose start is never commanded is not flown") {
-  auto list = list_of({destination(kHome, Bearing{degrees(90)}, Metres{200})}, 100);
-  list.start_when = 2;
-  Navigator nav{Belief{MetresPerSecond{0.5}, 0}};
-  nav.read(list, kHome, 0);
-  nav.dive(kHome, 0, {});
-  for (const double deg : fly(nav, 1000, 4)) CHECK(deg == 0);
-  CHECK(nav.hits() == 0);
+TEST_CASE("with list_stop_when 15 a waypoint is left behind beyond its distance") {
+  // Inside 500 m of the first point the glider steers to it, over it and back. A current of twice its
+  // speed carries it from 10 m to 500 m in 490/(1.0 - 0.5) = 980 s; the cycle after that ends the list.
+  auto list = list_of({kHome}, 500);
+  list.stop_when = 15;
+  list.legs = -2;
+  list.end_action = 6;
+  Navigator still{Belief{MetresPerSecond{0.5}, 1}};
+  still.read(list, kHome, 0);
+  still.dive(destination(kHome, Bearing{}, Metres{400}), 0, {});
+  fly(still, 6000, 4);
+  CHECK(still.hits() == 0);
+  CHECK(distance(still.reckoned(), kHome).si() < 5);
+  Navigator carried{Belief{MetresPerSecond{0.5}, 1}};
+  carried.read(list, kHome, 0);
+  carried.dive(destination(kHome, Bearing{}, Metres{10}), 0, current(0, 1.0));
+  fly(carried, 976, 4);
+  CHECK(carried.hits() == 0);
+  fly(carried, 16, 4);
+  CHECK(carried.hits() == 1);
+  CHECK(carried.ended());
 }
 
 TEST_CASE("reckoning takes a speed measured now, the aim the believed one") {

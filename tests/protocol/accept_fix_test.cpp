@@ -211,3 +211,31 @@ TEST_CASE("same_fix compares texts and times by difference") {
   CHECK_FALSE(model::same_fix(print(0, 48.25), print(60, 48.25)));
   CHECK_FALSE(model::same_fix(print(0, 48.25), accept_fix(at("2901.251", "-1528.400"), Limits{}).value()));
 }
+
+TEST_CASE("of a dialog without m_water the completed final current is taken, else the initial one") {
+  const auto water = [](bool vx, bool final_printed, bool initial_printed, WaterState state) {
+    const auto s = accept_fix(with([&](SurfaceBlock& b) {
+                                b.water = state;
+                                b.sensors.clear();
+                                if (vx) b.sensors = {{"m_water_vx", "m/s", 0.3, 1e308}};
+                                if (final_printed) {
+                                  b.sensors.push_back({"m_final_water_vx", "m/s", -0.04, 50});
+                                  b.sensors.push_back({"m_final_water_vy", "m/s", 0.12, 50});
+                                }
+                                if (initial_printed) {
+                                  b.sensors.push_back({"m_initial_water_vx", "m/s", 0.01, 80});
+                                  b.sensors.push_back({"m_initial_water_vy", "m/s", 0.02, 80});
+                                }
+                              }),
+                              Limits{});
+    REQUIRE(s);
+    return std::pair{s->water ? s->water->x.si() : 0.0, s->water_is_final};
+  };
+  using Told = std::pair<double, bool>;
+  CHECK(water(false, true, true, WaterState::complete) == Told{-0.04, true});
+  CHECK(water(false, true, true, WaterState::unknown) == Told{0.01, false});  // the final one is of the dive before
+  CHECK(water(false, true, false, WaterState::unknown) == Told{0.0, false});
+  CHECK(water(false, false, true, WaterState::complete) == Told{0.01, false});
+  CHECK(water(true, true, true, WaterState::complete) ==
+        Told{0.0, false});  // m_water is printed, and was never measured
+}

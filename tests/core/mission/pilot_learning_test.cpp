@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include "tests/support/pilot_desk.hpp"
@@ -113,4 +114,38 @@ TEST_CASE("a configured rotation that the Waypoint: lines contradict is told onc
     desk.wait(Seconds{4 * 3600.0});
   }
   CHECK(told == 1);
+}
+
+TEST_CASE("a frame of which nothing tells is said once, at the second surfacing; one that is configured is not") {
+  const auto said = [](const PilotDesk& desk) {
+    int count = 0;
+    for (const auto& effects : desk.effects)
+      for (const auto& say : PilotDesk::all<Say>(effects))
+        count += say.code == "frame" && say.text.find("nothing tells how the glider's frame") == 0 ? 1 : 0;
+    return count;
+  };
+  PilotDesk desk;
+  fly(desk, 1, Seconds{4 * 3600.0});
+  CHECK(said(desk) == 0);
+  fly(desk, 4, Seconds{4 * 3600.0});
+  CHECK(said(desk) == 1);
+  PilotDesk told{in_true_frame()};
+  fly(told, 4, Seconds{4 * 3600.0});
+  CHECK(said(told) == 0);
+}
+
+TEST_CASE("a surfacing without a measured current says so, and what a glider that steers by one is aimed for") {
+  for (const int correction : {1, 0}) {
+    auto m = in_true_frame();
+    m.current_correction = correction;
+    PilotDesk desk{m};
+    desk.surface_and_dive(28.5, -15.3, "0007.0003");
+    desk.wait(Seconds{4 * 3600.0});
+    desk.step(SurfacingHeard{desk.heard(28.54, -15.3), std::nullopt});
+    const auto says = desk.last<Say>();
+    const auto greeting = std::find_if(says.begin(), says.end(), [](const Say& s) { return s.code == "surfacing"; });
+    REQUIRE(greeting != says.end());
+    CHECK(greeting->text.find("no measured current in the dialog") != std::string::npos);
+    CHECK((greeting->text.find("(aimed as for still water)") != std::string::npos) == (correction == 1));
+  }
 }

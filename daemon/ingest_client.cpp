@@ -267,9 +267,13 @@ class Ingestion : public std::enable_shared_from_this<Ingestion> {
       refuse(job, result, story);
   }
 
+  /// The contents of all files, in order; of as many as were told.
   static std::vector<Sha256> contents_in(const IngestStory& story) {
+    auto sources = story.sources;
+    std::sort(sources.begin(), sources.end(), [](const auto& a, const auto& b) { return a.file < b.file; });
     std::vector<Sha256> contents;
-    for (const auto& source : story.sources) contents.push_back(source.content);
+    for (const auto& source : sources)
+      if (source.file == contents.size()) contents.push_back(source.content);
     return contents;
   }
 
@@ -386,7 +390,7 @@ IngestStory read_story(const std::string& out) {
       auto& identity = source.identity;
       if (words >> source.file >> hash >> identity.device >> identity.inode >> identity.size >> identity.modified_ns >>
               identity.changed_ns &&
-          source.file == story.sources.size() && Sha256::from_hex(hash, source.content))
+          Sha256::from_hex(hash, source.content))
         story.sources.push_back(source);
     }
   }

@@ -62,10 +62,16 @@ Grid depth_average(const GridView& grid, const DiveProfile& profile) {
   mean.values.assign(2 * plane * times, std::numeric_limits<float>::quiet_NaN());
   if (levels == 1) {
     std::copy(grid.values, grid.values + mean.values.size(), mean.values.begin());
+    mean.filled = grid.filled;
     return mean;
   }
   std::vector<std::vector<double>> weights(levels + 1);
   for (std::size_t wet = 1; wet <= levels; ++wet) weights[wet] = column_weights(grid.axes.depths_m, wet, profile);
+
+  // A mean is borrowed where a level of its column is.
+  std::vector<bool> filled(grid.filled.empty() ? 0 : plane * times, false);
+  for (const auto& run : grid.filled)
+    for (auto n = run.first; n < run.first + run.length; ++n) filled[n / plane / levels * plane + n % plane] = true;
 
   std::vector<std::size_t> wet(plane);
   std::vector<double> sums(2 * plane);
@@ -91,6 +97,8 @@ Grid depth_average(const GridView& grid, const DiveProfile& profile) {
       out[2 * n + 1] = static_cast<float>(sums[2 * n + 1]);
     }
   }
+  for (std::size_t n = 0; n < filled.size(); ++n) filled[n] = filled[n] && !std::isnan(mean.values[2 * n]);
+  mean.filled = runs_of(filled);
   return mean;
 }
 

@@ -1,5 +1,6 @@
 #include "core/ocean/grid_format.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -136,6 +137,35 @@ void read_facts(Cursor& cursor, GridFacts& facts) {
   for (std::uint32_t i = 0; i < warnings && !cursor.failed(); ++i) facts.warnings.push_back(cursor.text());
 }
 
+constexpr std::uint32_t kRunsAtMost = 1U << 23;
+
+void read_runs(Cursor& cursor, std::vector<NodeRun>& runs) {
+  const auto count = cursor.take<std::uint32_t>();
+  for (std::uint32_t i = 0; i < std::min(count, kRunsAtMost) && !cursor.failed(); ++i) {
+    const auto first = cursor.take<std::uint64_t>();
+    runs.push_back({first, cursor.take<std::uint64_t>()});
+  }
+}
+void put_runs(std::string& out, const std::vector<NodeRun>& runs) {
+  put(out, static_cast<std::uint32_t>(runs.size()));
+  for (const auto& run : runs) {
+    put(out, run.first);
+    put(out, run.length);
+  }
+}
+
+std::optional<GridError> fault_of_runs(const std::vector<NodeRun>& runs, const float* values, std::uint64_t nodes) {
+  std::uint64_t free = 0;
+  for (const auto& run : runs) {
+    if (run.length == 0 || run.first < free || run.first >= nodes || run.length > nodes - run.first)
+      return GridError{"they do not ascend within the " + std::to_string(nodes) + " nodes", "filled nodes"};
+    for (std::uint64_t n = run.first; n < run.first + run.length; ++n)
+      if (std::isnan(values[2 * n])) return GridError{"node " + std::to_string(n) + " has no value", "filled nodes"};
+    free = run.first + run.length + 1;
+  }
+  return std::nullopt;
+}
+
 void put_facts(std::string& out, const GridFacts& facts) {
   for (const std::string* text : {&facts.cycle, &facts.east_variable, &facts.north_variable, &facts.east_unit,
                                   &facts.north_unit, &facts.recognised_by, &facts.time_unit})
@@ -157,6 +187,18 @@ Sha256 provenance_of(const std::vector<GridSource>& sources) {
   return Sha256::of(hashes);
 }
 
+std::vector<NodeRun> runs_of(const std::vector<bool>& marked) {
+  std::vector<NodeRun> runs;
+  for (std::size_t n = 0; n < marked.size(); ++n) {
+    if (!marked[n]) continue;
+    if (n > 0 && marked[n - 1])
+      ++runs.back().length;
+    else
+      runs.push_back({n, 1});
+  }
+  return runs;
+}
+
 std::string write_grid(const Grid& grid) {
   const auto& axes = grid.axes;
   std::string header;
@@ -175,6 +217,7 @@ std::string write_grid(const Grid& grid) {
   for (const auto* axis : {&axes.times_s, &axes.depths_m, &axes.lats_deg, &axes.lons_deg})
     for (const double value : *axis) put(header, value);
   put_facts(header, grid.facts);
+  put_runs(header, grid.filled);
   header.resize((header.size() + 63) / 64 * 64, '\0');
   const auto size = static_cast<std::uint32_t>(header.size());
   std::memcpy(header.data() + 12, &size, sizeof size);
@@ -233,6 +276,7 @@ Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes) {
   view.axes.lats_deg = cursor.doubles(counts[2]);
   view.axes.lons_deg = cursor.doubles(counts[3]);
   read_facts(cursor, view.facts);
+  read_runs(cursor, view.filled);
   if (cursor.failed()) return fault("axes or texts run beyond it", "header");
   if (auto bad = fault_of_axes(view.axes)) return unexpected(std::move(*bad));
   if (!view.axes.has_time && counts[0] != 1) return fault("several times without a time axis", "times");
@@ -244,11 +288,12 @@ Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes) {
   if (crc32c(payload) != payload_crc) return fault("the checksum is wrong", "payload");
   view.values = reinterpret_cast<const float*>(payload.data());
   if (auto bad = fault_of_values(view.values, nodes)) return unexpected(std::move(*bad));
+  if (auto bad = fault_of_runs(view.filled, view.values, nodes)) return unexpected(std::move(*bad));
   return view;
 }
 
 GridView view_of(const Grid& grid) {
-  return {grid.axes, grid.facts, provenance_of(grid.facts.sources), grid.values.data()};
+  return {grid.axes, grid.facts, provenance_of(grid.facts.sources), grid.values.data(), grid.filled};
 }
 
 GridStatistics statistics_of(const GridView& view) {

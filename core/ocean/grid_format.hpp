@@ -16,7 +16,7 @@
 ///
 ///     offset  size  field
 ///          0     8  magic "GLHGRID1"
-///          8     4  version (1)
+///          8     4  version (3)
 ///         12     4  bytes of the whole header (a multiple of 64): the payload begins there
 ///         16     4  CRC-32C of the header, computed with this field zero
 ///         20     4  CRC-32C of the payload
@@ -28,6 +28,7 @@
 ///         64    32  SHA-256 over the hashes of the sources, in order
 ///         96     …  doubles: times (epoch seconds), depths (m, positive down), latitudes, longitudes (degrees)
 ///          …     …  texts: each a 32-bit length and its bytes; see GridFacts
+///          …     …  filled nodes: their number of runs (32 bits), then each run's first node and length (64 bits each)
 ///     header     …  float (east, north) in m/s, interleaved, [time][depth][latitude][longitude]; NaN = no value
 ///
 /// All axes ascend. Longitudes are unwrapped (170 … 190 across the antimeridian), begin in [−180, 180) and span less
@@ -35,7 +36,7 @@
 namespace glidehelm::ocean {
 
 /// Version of the layout; another version is another file.
-inline constexpr std::uint32_t kGridVersion = 1;
+inline constexpr std::uint32_t kGridVersion = 3;
 
 /// One file that went into a grid.
 struct GridSource {
@@ -68,11 +69,20 @@ struct GridAxes {
   friend bool operator==(const GridAxes&, const GridAxes&) = default;
 };
 
+/// Nodes that follow each other, counted [time][depth][latitude][longitude].
+struct NodeRun {
+  std::uint64_t first{}, length{};
+  friend bool operator==(const NodeRun&, const NodeRun&) = default;
+};
+/// The marked nodes as runs, ascending, with at least one unmarked node between them.
+std::vector<NodeRun> runs_of(const std::vector<bool>& marked);
+
 /// A grid that owns its numbers: what ingest builds and tests make.
 struct Grid {
   GridAxes axes;
   GridFacts facts;
-  std::vector<float> values;  ///< 2 · nodes: east, north, interleaved, [time][depth][latitude][longitude]
+  std::vector<float> values;      ///< 2 · nodes: east, north, interleaved, [time][depth][latitude][longitude]
+  std::vector<NodeRun> filled{};  ///< nodes whose values were borrowed from their neighbours; as `runs_of` makes them
 };
 
 /// Why bytes are not a grid.
@@ -90,6 +100,7 @@ struct GridView {
   GridFacts facts;
   Sha256 provenance;      ///< over the hashes of the sources
   const float* values{};  ///< 2 · axes.nodes() floats
+  std::vector<NodeRun> filled{};
 };
 
 /// The bytes of a grid. Precondition: axes and values fit together (ascending axes, sizes, NaN in pairs); `open_grid`
@@ -97,7 +108,7 @@ struct GridView {
 std::string write_grid(const Grid& grid);
 
 /// Believes nothing: magic, version, sizes (with overflow), checksums, texts, ascending finite axes in range, span of the
-/// longitudes, and that every value is finite or half of a pair of NaN. One pass over the payload. The bytes must be
+/// longitudes, that every value is finite or half of a pair of NaN, and that filled nodes exist and have values. One pass over the payload. The bytes must be
 /// aligned to four (a mapping and the heap are).
 Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes);
 

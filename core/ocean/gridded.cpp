@@ -38,6 +38,12 @@ GriddedField::GriddedField(const GridView& view, const GriddedOptions& options, 
   row_stride_ = 2 * lons_.size();
   level_stride_ = row_stride_ * lats_.size();
   time_stride_ = level_stride_ * depths_.size();
+  if (!view.filled.empty()) {
+    auto filled = std::make_shared<std::vector<bool>>(view.axes.nodes(), false);
+    for (const auto& run : view.filled)
+      std::fill_n(filled->begin() + static_cast<std::ptrdiff_t>(run.first), run.length, true);
+    filled_ = std::move(filled);
+  }
   find_fastest();
 }
 
@@ -108,6 +114,18 @@ bool GriddedField::locate(double lat, double lon, Place& place) const {
   return true;
 }
 
+bool GriddedField::over_filled(const float* slice, const Place& place) const {
+  if (!filled_) return false;
+  const auto base = static_cast<std::size_t>(slice - values_) / 2;
+  const std::size_t columns = lons_.size();
+  const auto marked = [&](std::size_t j, std::size_t i, double weight) {
+    return weight > 0 && (*filled_)[base + j * columns + i];
+  };
+  const double fx = place.fx, fy = place.fy;
+  return marked(place.j, place.i, (1 - fx) * (1 - fy)) || marked(place.j, place.east, fx * (1 - fy)) ||
+         marked(place.j + 1, place.i, (1 - fx) * fy) || marked(place.j + 1, place.east, fx * fy);
+}
+
 GriddedField::Spot GriddedField::wet_mean(const float* slice, const Place& place) const {
   const float* corner = slice + place.j * row_stride_ + 2 * place.i;
   const std::array<const float*, 4> corners{corner, slice + place.j * row_stride_ + 2 * place.east,
@@ -115,7 +133,7 @@ GriddedField::Spot GriddedField::wet_mean(const float* slice, const Place& place
                                             slice + (place.j + 1) * row_stride_ + 2 * place.east};
   if (place.east == place.i + 1) {
     const auto mean = bilinear_at(corner, row_stride_, place.fx, place.fy);
-    if (mean[0] == mean[0]) return {mean[0], mean[1], true, false, 0};
+    if (mean[0] == mean[0]) return {mean[0], mean[1], true, over_filled(slice, place), 0};
   }
   const double fx = place.fx, fy = place.fy;
   const std::array<double, 4> weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
@@ -127,7 +145,7 @@ GriddedField::Spot GriddedField::wet_mean(const float* slice, const Place& place
     north += weights[c] * static_cast<double>(corners[c][1]);
   }
   if (wet < 0.5) return {};
-  return {static_cast<float>(east / wet), static_cast<float>(north / wet), true, false, 0};
+  return {static_cast<float>(east / wet), static_cast<float>(north / wet), true, over_filled(slice, place), 0};
 }
 
 GriddedField::Spot GriddedField::borrow(const float* slice, const Place& place) const {
@@ -178,7 +196,7 @@ GriddedField::Answer GriddedField::between_levels(const Place& place, std::size_
   const auto blend = [fraction](float a, float b) {
     return static_cast<double>(a) + fraction * (static_cast<double>(b) - static_cast<double>(a));
   };
-  return answer(blend(upper.east, lower.east), blend(upper.north, lower.north), upper.borrowed);
+  return answer(blend(upper.east, lower.east), blend(upper.north, lower.north), upper.borrowed || lower.borrowed);
 }
 
 GriddedField::Answer GriddedField::at_time(const Place& place, double depth, std::size_t time) const {
@@ -206,7 +224,9 @@ GriddedField::Answer GriddedField::in_time(const Place& place, double depth, con
     const std::size_t corner = place.j * row_stride_ + 2 * place.i;
     const auto mean = bilinear_between(slice(bracket.first, 0) + corner, slice(bracket.next, 0) + corner, row_stride_,
                                        place.fx, place.fy, static_cast<float>(bracket.fraction));
-    if (mean[0] == mean[0]) return answer(mean[0], mean[1], false);
+    if (mean[0] == mean[0])
+      return answer(mean[0], mean[1],
+                    over_filled(slice(bracket.first, 0), place) || over_filled(slice(bracket.next, 0), place));
   }
   const auto before = at_time(place, depth, bracket.first);
   if (!before) return before;

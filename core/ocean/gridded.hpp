@@ -28,6 +28,7 @@ struct GriddedOptions {
 ///    weight.
 ///  - Otherwise the value of the nearest wet node within `coastal_fill_cells` (distance in cells of each axis; of equally
 ///    near nodes the southern, then the western), marked extrapolated; else `no_data`. When the mask is land: `land`.
+///  - A mean over a node that the grid itself has filled from its neighbours is marked extrapolated too.
 ///  - Outside the nodes: `outside_area`; the domain's edge is a wall. A grid around the globe has no edge in longitude.
 ///  - In depth: linear between levels; above the first level the first; where a level has no water under water that the
 ///    shallowest level has, `below_bottom`, also below the last level. A field without depths ignores the depth.
@@ -76,6 +77,8 @@ class GriddedField {
     return values_ + time * time_stride_ + level * level_stride_;
   }
   [[nodiscard]] bool locate(double lat, double lon, Place& place) const;
+  /// True when a corner with weight was filled.
+  [[nodiscard]] bool over_filled(const float* slice, const Place& place) const;
   [[nodiscard]] Spot wet_mean(const float* slice, const Place& place) const;
   [[nodiscard]] Spot borrow(const float* slice, const Place& place) const;
   [[nodiscard]] Answer at_time(const Place& place, double depth, std::size_t time) const;
@@ -93,6 +96,7 @@ class GriddedField {
   bool around_globe_{};  ///< the last column neighbours the first
   GriddedOptions options_;
   std::shared_ptr<const MetricTable> metric_;
+  std::shared_ptr<const std::vector<bool>> filled_;  ///< by node; empty when no node is
   double fastest_{};
 };
 

@@ -8,8 +8,6 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNodesAtMost = 2e9;  // 16 GB of floats
-
 std::string text_of(double value) {
   char buffer[40];
   std::snprintf(buffer, sizeof buffer, "%.3g", value);
@@ -71,11 +69,17 @@ Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& unit
   }
   if (options.area)
     if (auto done = cut(out.lats, out.lons, *options.area); !done) return unexpected(done.error());
+  if (options.only_time_s && out.has_time) {
+    const auto& values = out.times.values;
+    const auto at = std::find(values.begin(), values.end(), *options.only_time_s) - values.begin();
+    if (at == static_cast<std::ptrdiff_t>(values.size())) return fault("it has not the time that was asked for");
+    out.times = {{*options.only_time_s}, {out.times.source[static_cast<std::size_t>(at)]}};
+  }
   double nodes = 1;  // in floating point, which does not wrap
   for (const auto* axis : {&out.times, &out.depths, &out.lats, &out.lons})
     nodes *= static_cast<double>(axis->values.size());
-  if (nodes > kNodesAtMost)
-    return fault("it has " + text_of(nodes) + " nodes, allowed is " + text_of(kNodesAtMost) +
+  if (nodes > options.nodes_at_most)
+    return fault("it has " + text_of(nodes) + " nodes, allowed is " + text_of(options.nodes_at_most) +
                  "; cut it with --area W/E/S/N");
   return out;
 }

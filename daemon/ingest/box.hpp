@@ -22,7 +22,8 @@ struct Box {
   }
 };
 
-/// Reads the axes, and cuts them to the area that was asked for. Refused: more than 2e9 nodes.
+/// Reads the axes, and cuts them to the area that was asked for. Refused: more nodes than the
+/// options allow.
 Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& units, const ReadOptions& options,
                      std::vector<std::string>& warnings);
 

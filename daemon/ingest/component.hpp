@@ -38,6 +38,9 @@ class Component {
   static Result<Component> of(const Variable& variable, const Units& units, const std::string& target,
                               std::vector<std::string>& warnings);
 
+  /// A variable of plain numbers, such as a flag: neither packing nor unit counts.
+  static Component plain(const Variable& variable) { return Component{variable}; }
+
   /// In the target unit, or NaN.
   [[nodiscard]] double operator()(double stored) const;
   /// True when a number that is not missing lies outside the valid range (of packed variables: in the type of the

@@ -10,6 +10,7 @@ namespace glidehelm::ingest {
 /// Why a file is refused: what, where in the file, what is allowed.
 struct Fault {
   std::string what;
+  bool library{};  ///< the library could not read: of a remote address, perhaps not now
   friend bool operator==(const Fault&, const Fault&) = default;
 };
 template <class T>

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
 #include <set>
 #include <string>
@@ -7,6 +8,7 @@
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 #include "daemon/ingest/join.hpp"
+#include "daemon/ingest/opendap.hpp"
 #include "daemon/ingest/sandbox.hpp"
 #include "daemon/ingest/sources.hpp"
 #include "daemon/world/real_files.hpp"
@@ -16,7 +18,8 @@
 // is needed than there is, 4 refused before (--refused-before), 5 not to be had now: a later try may succeed.
 //
 // With --tell, what it is doing stands on standard output, so that whoever started it knows which file it died of:
-//   source N SHA256 DEVICE INODE SIZE MODIFIED_NS CHANGED_NS    file N (from 0) was copied; it looked like that
+//   source N SHA256 DEVICE INODE SIZE MODIFIED_NS CHANGED_NS    file N (from 0) was copied; it looked like that. Of an
+//                                                               address: it was read, and there was nothing to look at
 //   copying N / reading N / joining / writing                   what comes next
 
 using namespace glidehelm;
@@ -29,7 +32,7 @@ constexpr std::size_t kRefusedListAtMost = std::size_t{4} << 20;
 
 struct Arguments {
   std::vector<std::string> files;
-  std::string output, variables, epoch, area, heights, equator_band;
+  std::string output, variables, epoch, area, heights, equator_band, fill_gaps;
   double settle_s{};
   bool refused_before{}, tell{};
 };
@@ -93,6 +96,11 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
       return "--equator-band " + arguments.equator_band + ": allowed is 0 to 90 degrees";
     options.equator_band_deg = *degrees;
   }
+  if (!arguments.fill_gaps.empty()) {
+    const auto km = number_from(arguments.fill_gaps);
+    if (!km || *km < 0 || *km > 500) return "--fill-gaps " + arguments.fill_gaps + ": allowed is 0 to 500 km";
+    options.fill_gaps_m = *km * 1000;
+  }
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
   for (const auto& part : split(arguments.area, '/'))
@@ -132,7 +140,7 @@ world::FileResult<Done> write_file(world::Files& files, world::Rng& rng, const s
 }
 
 void tell_source(const Story& story, const Sources& sources, std::size_t i) {
-  const auto& stat = sources.stat(i);
+  const auto stat = sources.stat(i);
   std::string line = "source " + std::to_string(i) + " " + sources.identities()[i].hash.hex();
   for (const auto number : {stat.device, stat.inode, stat.size}) line += " " + std::to_string(number);
   for (const auto number : {stat.modified_ns, stat.changed_ns}) line += " " + std::to_string(number);
@@ -178,6 +186,14 @@ Expected<std::vector<Part>, int> read_parts(const Story& story, Sources& sources
   std::vector<Part> parts;
   for (std::size_t i = 0; i < sources.size(); ++i) {
     story.tell("reading " + std::to_string(i));
+    if (sources.is_elsewhere(i)) {
+      auto part = read_address(sources.name(i), units, options);
+      if (!part) return unexpected(refuse(sources, {i, part.error().what, part.error().passing}));
+      sources.identify(i, part->grid.facts.sources.front().hash);
+      tell_source(story, sources, i);
+      parts.push_back(std::move(*part));
+      continue;
+    }
     const auto bytes = sources.take(i);
     if (!bytes) return unexpected(refuse(sources, bytes.error()));
     auto part = read_part(sources.name(i), std::as_bytes(std::span{bytes->data(), bytes->size()}), units, options);
@@ -196,15 +212,17 @@ int run(const Arguments& arguments) {
   const auto units = Units::load();
   if (!units) return refuse(units.error().what);
   const auto known = arguments.refused_before ? refused_before(files) : std::set<std::string>{};
-  auto sources = Sources::open(arguments.files, kFileAtMost);
+  auto sources = Sources::open(arguments.files, kFileAtMost, is_address);
   if (!sources) return refuse_to_open(story, arguments, sources.error());
-  if (auto entered = enter_sandbox(folder_of(arguments.output), false); !entered) return refuse(entered.error());
+  const bool network = std::any_of(arguments.files.begin(), arguments.files.end(), is_address);
+  if (auto entered = enter_sandbox(folder_of(arguments.output), network); !entered) return refuse(entered.error());
 
   if (auto identified = sources->identify(Seconds{arguments.settle_s}, kKeptAtMost); !identified) {
     story.tell("copying " + std::to_string(identified.error().file));
     return refuse(*sources, identified.error());
   }
-  for (std::size_t i = 0; i < sources->size(); ++i) tell_source(story, *sources, i);
+  for (std::size_t i = 0; i < sources->size(); ++i)
+    if (!sources->is_elsewhere(i)) tell_source(story, *sources, i);
   if (const int code = look_up(story, *sources, known); code != 0) return code;
   auto parts = read_parts(story, *sources, *units, options);
   if (!parts) return parts.error();
@@ -245,6 +263,8 @@ int main(int argc, char** argv) {
                "standard input has one SHA-256 a line: contents that are refused without reading them again");
   app.add_flag("--tell", arguments.tell,
                "say on standard output what is being done, for the program that started this one");
+  app.add_option("--fill-gaps", arguments.fill_gaps,
+                 "km within which gaps of surface currents are filled (default: two cells of HF radar files)");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);

@@ -121,11 +121,20 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
   grid.axes.times_s.clear();
   const std::size_t plane = 2 * grid.axes.depths_m.size() * grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
   grid.values.reserve(plane * chosen.size());
+  std::vector<bool> filled(plane / 2 * chosen.size(), false);
   for (const auto& time : chosen) {
     grid.axes.times_s.push_back(time.time);
     const auto from = parts[time.part].grid.values.begin() + static_cast<std::ptrdiff_t>(plane * time.index);
     grid.values.insert(grid.values.end(), from, from + static_cast<std::ptrdiff_t>(plane));
+    // The plane's filled nodes, at their new place.
+    const std::size_t first = plane / 2 * time.index, size = plane / 2;
+    for (const auto& run : parts[time.part].grid.filled) {
+      const auto begin = std::max<std::uint64_t>(run.first, first);
+      const auto end = std::min<std::uint64_t>(run.first + run.length, first + size);
+      for (auto n = begin; n < end; ++n) filled[n - first + (grid.axes.times_s.size() - 1) * size] = true;
+    }
   }
+  grid.filled = ocean::runs_of(filled);
   return grid;
 }
 

@@ -3,7 +3,9 @@
 #include <netcdf.h>
 #include <netcdf_mem.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "core/base/text.hpp"
@@ -43,7 +45,7 @@ Type type_of(nc_type type) {
 }
 
 Unexpected<Fault> library_fault(const std::string& doing, int code) {
-  return fault("unreadable while " + doing + ": " + nc_strerror(code));
+  return unexpected(Fault{"unreadable while " + doing + ": " + nc_strerror(code), true});
 }
 
 /// A C text without what follows its first NUL: some writers pad with them.
@@ -82,6 +84,7 @@ NetcdfFile::~NetcdfFile() {
 }
 NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
     : id_{std::exchange(other.id_, -1)},
+      remote_{other.remote_},
       dimensions_{std::move(other.dimensions_)},
       variables_{std::move(other.variables_)},
       attributes_{std::move(other.attributes_)},
@@ -93,7 +96,17 @@ Result<NetcdfFile> NetcdfFile::open(std::span<const std::byte> bytes) {
   void* memory = const_cast<std::byte*>(bytes.data());
   if (const int code = nc_open_mem("forecast", NC_NOWRITE, bytes.size(), memory, &id); code != NC_NOERR)
     return library_fault("opening", code);
-  NetcdfFile file{id};
+  NetcdfFile file{id, false};
+  if (auto header = file.read_header(); !header) return unexpected(header.error());
+  return file;
+}
+
+Result<NetcdfFile> NetcdfFile::open_address(const std::string& address) {
+  int id = -1;
+  const std::string uncached = address + (address.find('#') == std::string::npos ? "#" : "&") + "noprefetch&nocache";
+  if (const int code = nc_open(uncached.c_str(), NC_NOWRITE, &id); code != NC_NOERR)
+    return library_fault("asking the OPeNDAP server", code);
+  NetcdfFile file{id, true};
   if (auto header = file.read_header(); !header) return unexpected(header.error());
   return file;
 }
@@ -207,8 +220,41 @@ std::string NetcdfFile::shape_of(const Variable& variable) const {
   return text + ")";
 }
 
+Result<Done> NetcdfFile::prove_end(const Variable& variable, std::span<const std::size_t> start,
+                                   std::span<const std::size_t> count, const std::vector<double>& values) const {
+  std::size_t zeros = 0;
+  while (zeros < values.size() && values[values.size() - 1 - zeros] == 0) ++zeros;
+  std::vector<std::size_t> from(start.begin(), start.end()), some(count.begin(), count.end());
+  for (std::size_t d = 0; d < some.size(); ++d) {
+    if (zeros > 0 && count[d] > 1) {
+      // From here on dimensions are whole, so that what is read again is the end of what was read.
+      const std::size_t row = values.size() / count[d];
+      const std::size_t rows = std::min(count[d], (zeros + row - 1) / row);
+      from[d] += count[d] - rows;
+      some[d] = rows;
+      break;
+    }
+    from[d] += count[d] - 1;
+    some[d] = 1;
+  }
+  const auto again = fetch(variable, from, some);
+  if (!again) return unexpected(again.error());
+  const auto same = [](double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); };
+  if (!std::equal(again->rbegin(), again->rend(), values.rbegin(), same))
+    return unexpected(Fault{"an answer with " + variable.name + " ended early, or the values changed meanwhile", true});
+  return Done{};
+}
+
 Result<std::vector<double>> NetcdfFile::read(const Variable& variable, std::span<const std::size_t> start,
                                              std::span<const std::size_t> count) const {
+  auto values = fetch(variable, start, count);
+  if (remote_ && values && !values->empty())
+    if (auto whole = prove_end(variable, start, count, *values); !whole) return unexpected(whole.error());
+  return values;
+}
+
+Result<std::vector<double>> NetcdfFile::fetch(const Variable& variable, std::span<const std::size_t> start,
+                                              std::span<const std::size_t> count) const {
   std::size_t size = 1;
   for (const auto n : count) size *= n;
   std::vector<double> values(size);

@@ -54,6 +54,12 @@ class NetcdfFile {
  public:
   /// Reads the header. Precondition: check_whole() accepted the bytes, which stay alive.
   static Result<NetcdfFile> open(std::span<const std::byte> bytes);
+  /// Asks an OPeNDAP server for the header; `read` asks for values. Blocks as long as the server is silent.
+  ///
+  /// libnetcdf takes an answer that ends early for a whole one and leaves zeros where it ended ("packet is apparently too
+  /// short" on stderr is all it says). So the end of every answer is asked for again by itself and must be the same: the
+  /// last value, or, where the answer ends in zeros, all that belongs to them. Nothing is taken from the library's cache.
+  static Result<NetcdfFile> open_address(const std::string& address);
   ~NetcdfFile();
   NetcdfFile(NetcdfFile&& other) noexcept;
   NetcdfFile& operator=(NetcdfFile&&) = delete;
@@ -76,11 +82,16 @@ class NetcdfFile {
   Result<std::vector<double>> read(const Variable& variable) const;
 
  private:
-  explicit NetcdfFile(int id) : id_{id} {}
+  NetcdfFile(int id, bool remote) : id_{id}, remote_{remote} {}
+  Result<std::vector<double>> fetch(const Variable& variable, std::span<const std::size_t> start,
+                                    std::span<const std::size_t> count) const;
+  [[nodiscard]] Result<Done> prove_end(const Variable& variable, std::span<const std::size_t> start,
+                                       std::span<const std::size_t> count, const std::vector<double>& values) const;
   Result<Done> read_header();
   Result<Done> read_groups();
   Result<std::vector<Attribute>> read_attributes(int variable, int count) const;
   int id_{-1};
+  bool remote_{};
   std::vector<Dimension> dimensions_;
   std::vector<Variable> variables_;
   std::vector<Attribute> attributes_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -9,8 +10,10 @@
 #include "core/base/utc.hpp"
 #include "daemon/ingest/box.hpp"
 #include "daemon/ingest/component.hpp"
+#include "daemon/ingest/gap_fill.hpp"
 #include "daemon/ingest/geostrophic.hpp"
 #include "daemon/ingest/plausible.hpp"
+#include "daemon/ingest/quality.hpp"
 #include "daemon/ingest/whole_file.hpp"
 
 namespace glidehelm::ingest {
@@ -93,6 +96,23 @@ Result<Done> finish(const Reading& reading) {
   return fault(std::move(what));
 }
 
+/// Fills the gaps of measured surface currents.
+void fill(Reading& reading) {
+  auto& grid = reading.part.grid;
+  const auto& wanted = reading.options.fill_gaps_m;
+  const double distance = wanted ? *wanted : is_radar(reading.file) ? two_cells(grid.axes) : 0;
+  if (!(distance > 0)) return;
+  if (grid.axes.depths_m.size() > 1) {
+    if (wanted) reading.warnings().emplace_back("gaps are filled at the surface only: it has several depths");
+    return;
+  }
+  const auto filled = fill_gaps(grid, distance);
+  char text[96];
+  std::snprintf(text, sizeof text, "%zu gaps are filled from values on both sides within %.1f km", filled,
+                distance * 1e-3);
+  if (filled > 0) reading.warnings().emplace_back(text);
+}
+
 Result<Done> read_currents(Reading& reading, const VelocityPair& pair, const std::string& name) {
   const auto axes = recognise_axes(reading.file, *pair.east);
   if (!axes) return unexpected(axes.error());
@@ -100,7 +120,10 @@ Result<Done> read_currents(Reading& reading, const VelocityPair& pair, const std
   if (!box) return unexpected(box.error());
   for (const auto& [variable, side] : {std::pair{pair.east, std::size_t{0}}, std::pair{pair.north, std::size_t{1}}})
     if (auto read = read_into(reading, *variable, "m/s", *axes, *box, side); !read) return read;
+  if (auto sound = drop_failed(reading.file, *pair.east, *axes, *box, reading.part.grid, reading.warnings()); !sound)
+    return sound;
   if (auto finished = finish(reading); !finished) return finished;
+  fill(reading);
   auto& facts = reading.part.grid.facts;
   facts.east_variable = pair.east->name;
   facts.north_variable = pair.north->name;

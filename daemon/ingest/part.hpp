@@ -21,6 +21,11 @@ struct ReadOptions {
   /// |latitude| below which heights say nothing. 5° by default, as the errata of Thesis A.1–A.2 ask: there a slope of 1 cm
   /// in 100 km already stands for 0.08 m/s, and ever more towards the equator.
   double equator_band_deg{5};
+  /// Gaps up to which distance are filled (gap_fill.hpp), metres; 0: none. Not named: two cells in files that say that they
+  /// come from HF radar, none in others.
+  std::optional<double> fill_gaps_m;
+  double nodes_at_most{2e9};          ///< 16 GB of floats
+  std::optional<double> only_time_s;  ///< one of the file's times alone: a second look at what may still change
 };
 
 /// Which components of the current a part has numbers for.

@@ -8,7 +8,7 @@
 namespace glidehelm::ingest {
 
 /// From now on this process computes: it reads the system's own files (libraries, the units' database; with `network` also
-/// what a name resolver and TLS need), makes, renames and removes files in `output_folder`, starts nothing, signals nobody
+/// what a name resolver and TLS need, and it may use /tmp), makes, renames and removes files in `output_folder`, starts nothing, signals nobody
 /// and, unless `network`, opens no socket. What is open stays open. Limits of memory, CPU time, file size and descriptors are
 /// set by whoever starts the program (daemon/ingest_client). docs/decisions/017 says what each fence is good for.
 ///

@@ -12,13 +12,18 @@ Unexpected<SourceFault> refuse(std::size_t file, const world::NotToBeHad& why) {
 
 }  // namespace
 
-Expected<Sources, SourceFault> Sources::open(const std::vector<std::string>& names, std::uint64_t file_at_most) {
+Expected<Sources, SourceFault> Sources::open(const std::vector<std::string>& names, std::uint64_t file_at_most,
+                                             const std::function<bool(const std::string&)>& elsewhere) {
   Sources sources;
   sources.names_ = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
+    if (elsewhere && elsewhere(names[i])) {
+      sources.files_.emplace_back(std::nullopt);
+      continue;
+    }
     auto file = world::PublishedFile::open(names[i], file_at_most);
     if (!file) return refuse(i, file.error());
-    sources.files_.push_back(std::move(*file));
+    sources.files_.emplace_back(std::move(*file));
   }
   sources.kept_.resize(names.size());
   return sources;
@@ -27,7 +32,11 @@ Expected<Sources, SourceFault> Sources::open(const std::vector<std::string>& nam
 Expected<Done, SourceFault> Sources::identify(Seconds settle, std::uint64_t kept_at_most) {
   std::uint64_t kept = 0;
   for (std::size_t i = 0; i < files_.size(); ++i) {
-    auto bytes = files_[i].copy(settle);
+    if (is_elsewhere(i)) {
+      identities_.push_back({names_[i], Sha256{}});
+      continue;
+    }
+    auto bytes = files_[i]->copy(settle);
     if (!bytes) return refuse(i, bytes.error());
     identities_.push_back({names_[i], Sha256::of(std::string_view{*bytes})});
     if (bytes->size() > kept_at_most - kept) continue;
@@ -39,7 +48,7 @@ Expected<Done, SourceFault> Sources::identify(Seconds settle, std::uint64_t kept
 
 Expected<std::string, SourceFault> Sources::take(std::size_t file) {
   if (auto kept = std::exchange(kept_[file], std::nullopt)) return std::move(*kept);
-  auto bytes = files_[file].copy(Seconds{0});
+  auto bytes = files_[file]->copy(Seconds{0});
   if (!bytes) return refuse(file, bytes.error());
   if (Sha256::of(std::string_view{*bytes}) != identities_[file].hash)
     return unexpected(SourceFault{file, "is still being written: it changed while it was read", true});

@@ -55,7 +55,7 @@ Expected<Done, std::string> permit(int rules, const std::string& path, std::uint
   }
   struct ::stat s {};
   if (::fstat(beneath.parent_fd, &s) == 0 && !S_ISDIR(s.st_mode))
-    beneath.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE;
+    beneath.allowed_access &= LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_WRITE_FILE | kTruncate;
   const long done = ::syscall(SYS_landlock_add_rule, rules, LANDLOCK_RULE_PATH_BENEATH, &beneath, 0U);
   const int problem = errno;
   ::close(beneath.parent_fd);
@@ -76,7 +76,8 @@ Expected<bool, std::string> fence_files(const Confinement& order) {
   for (const auto& path : order.read_below)
     if (auto done = permit(rules, path, kReadFile); !done && result) result = unexpected(done.error());
   for (const auto& path : order.write_below)
-    if (auto done = permit(rules, path, kWriteFile); !done && result) result = unexpected(done.error());
+    if (auto done = permit(rules, path, (kWriteFile | kTruncate) & all_rights(version)); !done && result)
+      result = unexpected(done.error());
   if (result && ::syscall(SYS_landlock_restrict_self, rules, 0U) != 0) result = failed("Landlock");
   ::close(rules);
   return result;

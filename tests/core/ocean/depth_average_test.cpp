@@ -132,3 +132,16 @@ TEST_CASE("a grid with one level is its own mean") {
   const Grid grid = test::make_grid(axes, [](double lat, double lon, double, double) { return std::pair{lat, lon}; });
   CHECK(depth_average(view_of(grid), {}).values == grid.values);
 }
+
+TEST_CASE("a mean over a filled level is filled") {
+  Grid grid = test::make_grid({{0, 3600}, {0, 100}, {0, 1}, {0, 1}, true, true}, [](double, double, double, double) {
+    return std::pair{0.1, 0.2};
+  });
+  grid.filled = {{3, 1}, {12, 2}};  // first time, surface, last node; second time, 100 m, first two nodes
+  CHECK(depth_average(view_of(grid), DiveProfile{Metres{0}, Metres{100}, 1, 1}).filled == std::vector<NodeRun>{{3, 3}});
+  Grid flat = test::make_grid({{0}, {0}, {0, 1}, {0, 1}, true, false}, [](double, double, double, double) {
+    return std::pair{0.1, 0.2};
+  });
+  flat.filled = {{1, 2}};
+  CHECK(depth_average(view_of(flat), {}).filled == flat.filled);
+}

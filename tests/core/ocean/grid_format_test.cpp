@@ -25,6 +25,7 @@ Grid small() {
   grid.facts.time_unit = "hours since 1950-01-01";
   grid.facts.sources = {{"a.nc", Sha256::of("a")}, {"b.nc", Sha256::of("b")}};
   grid.facts.warnings = {"first", ""};
+  grid.filled = {{2, 3}, {9, 1}};
   return grid;
 }
 
@@ -60,6 +61,7 @@ TEST_CASE("a grid comes back from its bytes as it was written") {
   CHECK(view->facts.time_unit == "hours since 1950-01-01");
   CHECK(view->facts.sources == grid.facts.sources);
   CHECK(view->facts.warnings == grid.facts.warnings);
+  CHECK(view->filled == grid.filled);
   CHECK(view->provenance == provenance_of(grid.facts.sources));
   CHECK(std::memcmp(view->values, grid.values.data(), grid.values.size() * sizeof(float)) == 0);
   CHECK(write_grid(grid) == bytes);
@@ -147,3 +149,22 @@ TEST_CASE("statistics count wet nodes and their speeds") {
 }
 
 TEST_CASE("the payload begins at a multiple of 64 bytes") { CHECK(header_size(write_grid(small())) % 64 == 0); }
+
+TEST_CASE("filled nodes that do not exist, overlap or have no value are not believed") {
+  // Node 1 is dry: the first row's second column.
+  for (const auto& runs : {std::vector<NodeRun>{{1, 1}}, std::vector<NodeRun>{{0, 2}}, std::vector<NodeRun>{{2, 0}},
+                           std::vector<NodeRun>{{36, 1}}, std::vector<NodeRun>{{30, ~std::uint64_t{0}}},
+                           std::vector<NodeRun>{{4, 3}, {6, 1}}, std::vector<NodeRun>{{4, 3}, {2, 1}}}) {
+    Grid grid = small();
+    grid.filled = runs;
+    const auto view = open_grid(bytes_of(write_grid(grid)));
+    REQUIRE_FALSE(view);
+    CHECK(view.error().where == "filled nodes");
+  }
+}
+
+TEST_CASE("marks become runs and say the same") {
+  CHECK(runs_of({}).empty());
+  CHECK(runs_of({false, false}).empty());
+  CHECK(runs_of({true, true, false, true}) == std::vector<NodeRun>{{0, 2}, {3, 1}});
+}

@@ -265,3 +265,29 @@ TEST_CASE("a copy keeps the numbers alive") {
   }
   CHECK(east_of(copy->sample(geo_point(2, 2), Depth{}, 0)) == 22);
 }
+
+TEST_CASE("a sample over a filled node is marked extrapolated, at the times and levels that have it") {
+  ocean::Grid grid = test::make_grid({{0, 3600, 7200}, {0, 100}, {0, 1, 2}, {0, 1, 2}, true, true},
+                                     [](double, double, double, double) {
+                                       return std::pair{0.1, 0.2};
+                                     });
+  grid.filled = {{4, 1}};  // first time, surface, the middle node
+  const ocean::GriddedField field{grid, {}};
+  const auto marked = [&](double lat, double lon, double depth, double t) {
+    return field.sample(geo_point(lat, lon), Depth{Metres{depth}}, t)->extrapolated;
+  };
+  CHECK(marked(1, 1, 0, 0));
+  CHECK(marked(0.5, 0.5, 0, 0));
+  CHECK(marked(0.5, 0.5, 50, 1800));
+  CHECK_FALSE(marked(0.5, 0, 0, 0));   // on the edge the middle node has no weight
+  CHECK_FALSE(marked(1, 1, 100, 0));   // the level below is a value of its own
+  CHECK_FALSE(marked(1, 1, 0, 5400));  // so are the later times
+  // The fast path of two dimensions marks alike.
+  ocean::Grid flat = test::make_grid({{0, 3600}, {0}, {0, 1}, {0, 1}, true, false}, [](double, double, double, double) {
+    return std::pair{0.1, 0.2};
+  });
+  flat.filled = {{4, 1}};  // second time, south-west
+  const GriddedField sheet{flat, {}};
+  CHECK(sheet.sample(geo_point(0.5, 0.5), Depth{}, 1800)->extrapolated);
+  CHECK_FALSE(sheet.sample(geo_point(1, 1), Depth{}, 1800)->extrapolated);
+}

@@ -71,6 +71,79 @@ Fields<LineDraft> line_fields() {
   return f;
 }
 
+constexpr int kMostWordings = 16;
+
+bool matches_wording(std::string_view text) {
+  return text.size() >= 2 && text.size() <= 120 && text.front() != ' ' && text.back() != ' ' &&
+         std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
+const Pattern kWording{"^[!-~][ -~]{0,118}[!-~]$", "2 to 120 printable ASCII characters, no blank at either end",
+                       matches_wording};
+
+using Words = protocol::DialogWords;
+
+/// The wordings of one fact; what the file says replaces the usual ones.
+void add_wordings(Fields<Words>& f, const Key& key, std::vector<std::string> Words::*member) {
+  Shape shape;
+  shape.kind = Shape::Kind::list;
+  shape.at_least = 1;
+  shape.at_most = kMostWordings;
+  shape.parts.push_back(Shape{});
+  shape.parts.back().pattern = &kWording;
+  f.custom(
+      key, shape, yaml_list(Words{}.*member),
+      [member](const At& at, Words& words) {
+        if (!expect_list(at, 1, kMostWordings)) return;
+        (words.*member).clear();
+        for (std::size_t i = 0; i < at.node.items.size(); ++i)
+          if (auto text = read_text(at.item(i), kWording)) (words.*member).push_back(std::move(*text));
+      },
+      [member, name = key.name](const Words& words, const std::string& path, Effective& out) {
+        out.leaf(path, name, yaml_list(words.*member));
+      });
+}
+
+struct Wordings {
+  const char *key, *meaning;
+  std::vector<std::string> Words::*member;
+};
+constexpr Wordings kWordings[]{
+    {"reread", "Ctrl-F was answered: the glider reads its mafiles again", &Words::reread},
+    {"transfer_starts", "a transfer began; the file's name follows", &Words::transfer_starts},
+    {"transfer_done", "a transfer ended with its file; the name follows", &Words::transfer_done},
+    {"transfer_failed", "a transfer ended without its file; the name follows", &Words::transfer_failed},
+    {"command_succeeded", "a `!` command ended well; the command follows", &Words::command_succeeded},
+    {"command_failed", "a `!` command was refused; the command follows", &Words::command_failed},
+    {"nothing_to_send", "in a dockserver block: there was no file to send", &Words::nothing_to_send}};
+
+Fields<Words> dialog_fields() {
+  Fields<Words> f;
+  for (const auto& w : kWordings) add_wordings(f, {w.key, w.meaning}, w.member);
+  return f;
+}
+
+/// One text that says two things: only one of them would ever be heard.
+void check_dialog(const At& at, const Words& words) {
+  std::map<std::string, std::string> first;
+  for (const auto& wordings : kWordings) {
+    const auto* key = wordings.key;
+    const auto& texts = words.*wordings.member;
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      const auto path = at.path + "." + key;
+      const auto [before, is_new] = first.emplace(texts[i], key);
+      if (is_new) continue;
+      // One of the two stands in the file; the other may be a usual text of a key that was left out.
+      const auto* here = at.node.find(key);
+      const auto other = here != nullptr ? before->second : std::string{key};
+      const auto problem = other == key ? "stands twice" : "is also a text of " + other;
+      if (here != nullptr)
+        At{*here, &at.node, path, at.reading}.item(i).complain(problem, shown(texts[i]));
+      else
+        at.reading.complain(at.path + "." + before->second, problem, shown(texts[i]));
+    }
+  }
+}
+
 /// What `line:` says as a whole.
 void check_line(const At& at, const LineDraft& line) {
   const auto complain = [&](const char* key, std::string problem, std::string found, std::string allowed) {
@@ -137,6 +210,20 @@ const Fields<Draft>& fields() {
           out.close();
         });
     glider.text({"to_glider", "the dockserver's folder of files for this glider", true}, &EntryDraft::to_glider);
+    const auto dialog = dialog_fields();
+    glider.custom(
+        {"dialog", "texts of its dialog, where they are not the usual ones; what is left out stays as it is"},
+        dialog.shape(), "",
+        [dialog](const At& at, EntryDraft& entry) {
+          if (!expect_map(at)) return;
+          dialog.read(at, entry.dialog);
+          check_dialog(at, entry.dialog);
+        },
+        [dialog](const EntryDraft& entry, const std::string& path, Effective& out) {
+          out.open("dialog");
+          dialog.print(entry.dialog, path, out);
+          out.close();
+        });
     glider.flag({"clock_skew_ok", "the glider's clock is known to differ by more than 5 min: emit nevertheless"},
                 &EntryDraft::clock_skew_ok);
     Fields<Draft> log;

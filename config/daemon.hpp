@@ -9,6 +9,7 @@
 #include "config/network.hpp"
 #include "config/yaml_reader/fields.hpp"
 #include "core/base/expected.hpp"
+#include "protocol/dialog_words.hpp"
 
 /// The daemon file, `schema: glidehelm/daemon/v1` (product.md 5). docs/configuration.md lists every key.
 namespace glidehelm::config {
@@ -34,7 +35,8 @@ struct GliderEntry {
   std::string name;
   Line line;
   std::string to_glider;  ///< the dockserver's folder of files for this glider; resolved, without a slash at the end
-  bool clock_skew_ok{};   ///< a difference of more than 5 min between glider and daemon clock is known and accepted
+  protocol::DialogWords dialog;  ///< texts of its dialog that firmwares, dockservers and scripts word differently
+  bool clock_skew_ok{};  ///< a difference of more than 5 min between glider and daemon clock is known and accepted
   friend bool operator==(const GliderEntry&, const GliderEntry&) = default;
 };
 

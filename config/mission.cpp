@@ -42,12 +42,13 @@ Range above(double low, double high) {
 
 bool matches_next(std::string_view text) { return text.substr(0, 5) == "next " && kName.matches(text.substr(5)); }
 bool matches_mi(std::string_view text) {
-  return text.size() > 3 && text.size() <= 64 && text.substr(text.size() - 3) == ".mi" &&
+  return text.size() > 3 && text.size() <= 8 + 3 && text.substr(text.size() - 3) == ".mi" &&
          std::all_of(text.begin(), text.end() - 3,
                      [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-'; });
 }
 const Pattern kNext{"^next [a-z0-9][a-z0-9_-]{0,31}$", "`next NAME`", matches_next};
-const Pattern kMi{"^[a-z0-9_-]{1,61}\\.mi$", "a name of a–z, 0–9, _ and - that ends in .mi", matches_mi};
+// The firmware keeps its files under 8.3 names.
+const Pattern kMi{"^[a-z0-9_-]{1,8}\\.mi$", "1 to 8 of a–z, 0–9, _ and -, then .mi", matches_mi};
 
 Fields<Draft> goal_fields() {
   Fields<Draft> f;

@@ -101,12 +101,6 @@ template <class F>
 void members(SurfacingHeard& e, F&& f) {
   f("surfacing", e.surfacing), f("coast_distance_m", e.coast_distance), f("forecast", e.forecast);
 }
-/// Journals of before there was a forecast in this event replay too.
-inline void read(const json& j, SurfacingHeard& e) {
-  json complete = j;
-  if (complete.is_object() && !complete.contains("forecast")) complete["forecast"] = nullptr;
-  values::read_members(complete, e);
-}
 template <class F>
 void members(FixRefused& e, F&& f) {
   f("refusal", e.refusal);
@@ -124,6 +118,10 @@ void members(DiveBegan&, F&&) {}
 template <class F>
 void members(TransferHeard& e, F&& f) {
   f("file", e.file), f("ended", e.ended);
+}
+template <class F>
+void members(TransferFailed& e, F&& f) {
+  f("file", e.file);
 }
 template <class F>
 void members(ListReread&, F&&) {}
@@ -225,15 +223,35 @@ namespace {
 using nlohmann::json;
 
 /// The name of each alternative in the journal: never change one.
-constexpr std::array<const char*, 15> kEventNames{
-    "surfacing_heard", "fix_refused", "window_heard", "window_extended", "dive_began",
-    "transfer_heard",  "list_reread", "candidate",    "planning_ended",  "judged",
-    "emission_ended",  "folder_seen", "timer_fired",  "mission_changed", "restarted"};
+constexpr std::array<const char*, 16> kEventNames{
+    "surfacing_heard", "fix_refused", "window_heard",    "window_extended", "dive_began", "transfer_heard",
+    "transfer_failed", "list_reread", "candidate",       "planning_ended",  "judged",     "emission_ended",
+    "folder_seen",     "timer_fired", "mission_changed", "restarted"};
 constexpr std::array<const char*, 9> kEffectNames{"begin_planning", "stop_planning", "verify",       "emit",
                                                   "inspect_folder", "set_timer",     "cancel_timer", "say",
                                                   "record"};
 static_assert(kEventNames.size() == std::variant_size_v<decltype(mission::Event::what)>);
 static_assert(kEffectNames.size() == std::variant_size_v<mission::Effect>);
+
+/// Members that an event did not have from the beginning, and what its older records mean by leaving them out: a journal replays
+/// to the same bytes whatever version wrote it. Whoever adds a member to an event adds its line here.
+struct Newer {
+  const char* event;
+  const char* member;  ///< JSON pointer from the event
+  json meant;
+};
+const std::vector<Newer>& newer_members() {
+  static const std::vector<Newer> kNewer{{"surfacing_heard", "/forecast", nullptr}};
+  return kNewer;
+}
+
+json completed(const std::string& event, json what) {
+  for (const auto& newer : newer_members()) {
+    const json::json_pointer member{newer.member};
+    if (event == newer.event && what.is_object() && !what.contains(member)) what[member] = newer.meant;
+  }
+  return what;
+}
 
 /// Reads the alternative of that name into the variant.
 template <std::size_t I = 0, class Variant>
@@ -269,7 +287,8 @@ Expected<JournalledEvent, std::string> event_from_json(std::string_view text) {
     JournalledEvent result;
     result.glider = j.at("glider").get<std::string>();
     values::read(j.at("now"), result.event.now);
-    read_alternative(j.at("what"), j.at("event").get<std::string>(), result.event.what);
+    const auto name = j.at("event").get<std::string>();
+    read_alternative(completed(name, j.at("what")), name, result.event.what);
     return result;
   } catch (const std::exception& e) {
     return unexpected(std::string{e.what()});

@@ -17,7 +17,8 @@ struct JournalledEvent {
 };
 
 std::string event_json(std::string_view glider, const mission::Event& event);
-/// The mission of a MissionChanged is read again from its YAML. The error says what is wrong and where.
+/// The mission of a MissionChanged is read again from its YAML. Members that came after the first journals may be missing. The
+/// error says what is wrong and where.
 Expected<JournalledEvent, std::string> event_from_json(std::string_view text);
 
 /// For comparing a replay with what was done; effects are not read back.

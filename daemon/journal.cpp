@@ -4,7 +4,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <optional>
+
+#include "daemon/world/program_version.hpp"
 
 namespace glidehelm::daemon {
 
@@ -33,6 +36,9 @@ T get(std::string_view from, std::size_t at) {
     value |= static_cast<std::uint64_t>(static_cast<unsigned char>(from[at + i])) << (8 * i);
   return static_cast<T>(value);
 }
+
+/// Whose records these are, should another version not understand one.
+std::string epoch_payload() { return nlohmann::json{{"version", world::program_version()}}.dump(); }
 
 std::string segment_name(std::uint64_t number) {
   char name[40];
@@ -164,7 +170,7 @@ Expected<std::unique_ptr<Journal>, JournalError> Journal::open(world::Folder& fo
     if (auto synced = journal->sync(); !synced) return unexpected(synced.error());
   }
   ++journal->epoch_;
-  if (auto record = journal->append(RecordType::epoch, "{}", utc, tick, Durable::yes); !record)
+  if (auto record = journal->append(RecordType::epoch, epoch_payload(), utc, tick, Durable::yes); !record)
     return unexpected(record.error());
   return journal;
 }

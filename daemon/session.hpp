@@ -31,7 +31,11 @@ struct Desk {
   std::shared_ptr<GridCache> cache{};             ///< of the folder of grids, for all sessions
 };
 
-/// One glider: its line, its dialog, its pilot, and the hands that carry out what the pilot wants. Runs in the loop's thread.
+/// One glider: its line and dialog (session_line.cpp), its pilot (session.cpp), the hands that carry out what the pilot wants
+/// (session_answer.cpp), and how it comes back after a crash (session_recovery.cpp). Runs in the loop's thread.
+///
+/// Whatever comes from the line, it holds at most what its reader holds (DialogReader), and says what was not used: when a
+/// console opens and when the connection closes.
 class Session {
  public:
   Session(config::GliderEntry entry, Desk desk);
@@ -73,6 +77,7 @@ class Session {
   void hear_name(const std::string& name);
   void hear_block(const protocol::SurfaceBlock& block);
   void flush_when_idle();
+  void tell_unused();
 
   // the pilot
   void feed(decltype(mission::Event::what) what);
@@ -86,6 +91,7 @@ class Session {
   void carry_out(const mission::CancelTimer& e);
   void carry_out(const mission::Say& e);
   void carry_out(const mission::Record& e);
+  static mission::EmissionEnded ended(const Emission& emission, const std::string& surfacing);
   void judged(std::uint64_t request, std::uint64_t number, const world::ProcessResult& result);
   void plan_waiting();
   [[nodiscard]] mission::FolderSeen look_into_folder();
@@ -102,7 +108,8 @@ class Session {
   ForecastWatch forecast_;
   std::unique_ptr<Line> line_;
   protocol::DialogReader reader_;
-  std::string name_;  ///< heard on this connection
+  protocol::DialogCounts told_;  ///< what was said of this connection's lines
+  std::string name_;             ///< heard on this connection
   bool connected_{}, stepping_{}, mute_{};
   std::uint64_t bytes_{};
   world::TimerId idle_timer_{}, folder_timer_{};

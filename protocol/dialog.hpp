@@ -12,7 +12,7 @@
 
 namespace glidehelm::protocol {
 
-/// What a reader has seen so far. All count lines except the last two.
+/// What a reader has seen so far.
 struct DialogCounts {
   std::uint64_t connections{};
   std::uint64_t at_surface_blocks{};  ///< `Glider X at surface.`
@@ -20,8 +20,9 @@ struct DialogCounts {
   std::uint64_t sensor_lines{};       ///< complete ones
   std::uint64_t damaged_lines{};      ///< match in part, or were cut
   std::uint64_t dockserver_blocks{};
-  std::uint64_t long_lines{};  ///< beyond 4 KiB
-  std::uint64_t discarded_bytes{};
+  std::uint64_t lost_blocks{};      ///< dockserver blocks without an end
+  std::uint64_t long_lines{};       ///< beyond 4 KiB
+  std::uint64_t discarded_bytes{};  ///< of long lines, lost blocks and transfers
   friend bool operator==(const DialogCounts&, const DialogCounts&) = default;
 };
 

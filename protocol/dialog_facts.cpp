@@ -48,6 +48,8 @@ constexpr std::array<std::pair<Say, std::string_view>, 32> kPhrases{{
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
+bool is_name_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '.'; }
+
 std::string_view first_word(std::string_view text) { return text.substr(0, text.find_first_of(" \t")); }
 
 /// One line with the place of the label that is being read.
@@ -139,7 +141,17 @@ std::optional<Fact> prompt(Say say, const Place& place, std::size_t& used) {
 }
 
 std::optional<Fact> file_name(Say say, const Place& place) {
-  const auto name = trimmed(first_word(place.rest()));
+  const auto rest = place.rest();
+  // Behind a word a blank; a name that goes on where the text ends would be the tail of another one.
+  const auto begin = rest.find_first_not_of(" \t");
+  if (begin == std::string_view::npos || (begin == 0 && is_name_character(place.line[place.end - 1])))
+    return Fact{say, false, {}, 0};
+  constexpr std::string_view kAround =
+      "'\"`,;:()<>.";  // what a sentence puts beside a name; 8.3 names have none of it at their ends
+  const auto word = trimmed(first_word(rest.substr(begin)));
+  const auto first = word.find_first_not_of(kAround);
+  const auto name = first == std::string_view::npos ? std::string_view{}
+                                                    : word.substr(first, word.find_last_not_of(kAround) + 1 - first);
   if (name.empty()) return Fact{say, false, {}, 0};
   return Fact{say, true, std::string{name}, 0};
 }

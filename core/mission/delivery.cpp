@@ -33,6 +33,8 @@ std::string_view word(Delivery state) {
       return "sending";
     case Delivery::gone:
       return "gone";
+    case Delivery::unknown:
+      return "unknown";
     case Delivery::reread:
       return "re-read";
     case Delivery::flying:
@@ -54,11 +56,28 @@ void FileOnItsWay::queued(QueuedFile file) {
   if (older_.size() > kOlder) older_.pop_front();
   file_ = std::move(file);
   state_ = Delivery::queued;
+  failed_ = false;
 }
 
-bool FileOnItsWay::transfer_began() { return state_ == Delivery::queued && become(Delivery::sending); }
+bool FileOnItsWay::transfer_began() {
+  if (state_ != Delivery::queued) return false;
+  failed_ = false;
+  return become(Delivery::sending);
+}
 
-bool FileOnItsWay::transfer_ended() { return in_folder() && become(Delivery::gone); }
+bool FileOnItsWay::transfer_ended() {
+  if (!in_folder() && state_ != Delivery::unknown) return false;
+  failed_ = false;
+  return become(Delivery::gone);
+}
+
+bool FileOnItsWay::transfer_failed() {
+  // One that flies was whole; what failed now is another transfer, of a file that is not ours.
+  const bool left = state_ == Delivery::gone || state_ == Delivery::reread;
+  if (!in_folder() && !left) return false;
+  failed_ = true;
+  return become(left ? Delivery::unknown : Delivery::queued);
+}
 
 bool FileOnItsWay::seen_in_folder() {
   // During a transfer it lies there until the end. What lies there afterwards is sent again at the next call.
@@ -66,15 +85,16 @@ bool FileOnItsWay::seen_in_folder() {
   return become(Delivery::queued);
 }
 
-bool FileOnItsWay::seen_no_file() { return in_folder() && become(Delivery::gone); }
+bool FileOnItsWay::seen_no_file() { return in_folder() && become(failed_ ? Delivery::unknown : Delivery::gone); }
 
 bool FileOnItsWay::seen_foreign() { return in_folder() && become(Delivery::overruled); }
 
 bool FileOnItsWay::list_reread() { return state_ == Delivery::gone && become(Delivery::reread); }
 
 bool FileOnItsWay::waypoint_heard(GeoPoint at) {
-  if ((state_ != Delivery::gone && state_ != Delivery::reread) || !number_of(at)) return false;
-  if (state_ == Delivery::gone && in_older(at)) return false;
+  const bool left = state_ == Delivery::gone || state_ == Delivery::unknown || state_ == Delivery::reread;
+  if (!left || !number_of(at)) return false;
+  if (state_ != Delivery::reread && in_older(at)) return false;
   return become(Delivery::flying);
 }
 

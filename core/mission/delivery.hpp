@@ -16,6 +16,7 @@ enum class Delivery {
   queued,    ///< it lies in to-glider
   sending,   ///< the dialog says that a transfer of it began
   gone,      ///< the transfer ended, or the file is gone from to-glider: probably picked up
+  unknown,   ///< its transfer failed and it is gone from to-glider: half of it may be on the glider
   reread,    ///< after that the dialog said that the glider reads its lists again
   flying,    ///< after that a `Waypoint:` line named one of its waypoints
   overruled  ///< a human's file lies where it lay
@@ -38,13 +39,16 @@ class FileOnItsWay {
   void queued(QueuedFile file);
   bool transfer_began();
   bool transfer_ended();
+  /// The transfer failed: the file is queued again, or unknown when it has left the folder before or leaves it now.
+  bool transfer_failed();
   /// The folder was looked at: ours is there, no file, or somebody else's.
   bool seen_in_folder();
   bool seen_no_file();
   bool seen_foreign();
   bool list_reread();
   /// Proof, when the waypoint is one of the list to within the 1.5e-4 minute of two roundings (0.3 m) and the file has left
-  /// the folder. A waypoint that one of the three lists before has too proves nothing unless the re-read was heard.
+  /// the folder. A waypoint that one of the three lists before has too proves nothing unless the re-read was heard. A
+  /// re-read after a failed transfer proves nothing, its waypoint does.
   bool waypoint_heard(GeoPoint at);
   /// The call is over: a transfer that did not end has failed.
   bool call_ended();
@@ -64,6 +68,7 @@ class FileOnItsWay {
   [[nodiscard]] bool in_older(GeoPoint at) const;
 
   Delivery state_{Delivery::none};
+  bool failed_{};  ///< the last transfer of it did
   std::optional<QueuedFile> file_;
   std::deque<model::WaypointList> older_;  ///< the newest last
 };

@@ -91,6 +91,11 @@ struct TransferHeard {
   bool ended{};
   friend bool operator==(const TransferHeard&, const TransferHeard&) = default;
 };
+/// A transfer of `file` to the glider ended without the whole file: half of it may be on board.
+struct TransferFailed {
+  std::string file;
+  friend bool operator==(const TransferFailed&, const TransferFailed&) = default;
+};
 struct ListReread {
   friend bool operator==(ListReread, ListReread) = default;
 };
@@ -152,8 +157,9 @@ struct Restarted {
 
 struct Event {
   Moment now;
-  std::variant<SurfacingHeard, FixRefused, WindowHeard, WindowExtended, DiveBegan, TransferHeard, ListReread,
-               CandidateFound, PlanningEnded, Judged, EmissionEnded, FolderSeen, TimerFired, MissionChanged, Restarted>
+  std::variant<SurfacingHeard, FixRefused, WindowHeard, WindowExtended, DiveBegan, TransferHeard, TransferFailed,
+               ListReread, CandidateFound, PlanningEnded, Judged, EmissionEnded, FolderSeen, TimerFired, MissionChanged,
+               Restarted>
       what;
   friend bool operator==(const Event&, const Event&) = default;
 };

@@ -239,9 +239,9 @@ void Pilot::open_surfacing(const SurfacingHeard& e) {
   planned_from_.reset();
   first_heard_ = now_.tick;
   deadline_ = Tick{};
-  for (const Timer t : {Timer::late_note, Timer::late_alert, Timer::late_page}) cancel_timer(t);
-  if (late_said_) say(Level::clear, "late", "the glider called: all clear");
-  late_said_ = false;
+  failure_told_ = false;
+  far_off_.reset();
+  if (std::exchange(late_said_, false)) say(Level::clear, "late", "the glider called: all clear");
 
   believed_ = believed_current(s, learned_.rotation.clockwise);
   const Seconds skew{std::abs(static_cast<double>(
@@ -254,6 +254,8 @@ void Pilot::open_surfacing(const SurfacingHeard& e) {
         skew.count());
   greet(s);
   remember(s);
+  expected_.reset();
+  watch_for_call();
   record("surfacing", fmt::format("accepted fix {} taken {}", place(s.fix), clock_text(s.fix_taken)));
   set_deadline(later(now_.tick, mission_ ? mission_->window_max : Seconds{900}));
   note_dialog(s);
@@ -595,53 +597,6 @@ void Pilot::keep(const std::string& code, const std::string& why) {
   expect_next();
 }
 
-// ---- watching -------------------------------------------------------------------------------------------------------
-
-void Pilot::expect_next() {
-  if (!mission_ || !last_) return;
-  expect_place();
-  const Seconds interval = learned_.surface + learned_.stint;
-  expected_s_ = epoch_seconds(last_->fix_taken) + interval.count();
-  const Tick expected = later(now_.tick, Seconds{*expected_s_ - epoch_seconds(now_.utc)});
-  set_timer(Timer::late_note, later(expected, 0.1 * interval));
-  set_timer(Timer::late_alert, later(expected, interval));
-  const Seconds page = std::min(Seconds{14 * 3600.0}, 2.5 * interval);
-  set_timer(Timer::late_page, later(expected, std::max(page - interval, interval + Seconds{60})));
-}
-
-void Pilot::on(const TimerFired& e) {
-  const auto kind = static_cast<std::size_t>(e.timer);
-  if (e.serial != serials_[kind]) return;
-  const auto overdue = [&] {
-    return expected_s_ ? hours(Seconds{epoch_seconds(now_.utc) - *expected_s_}) : std::string{"?"};
-  };
-  switch (e.timer) {
-    case Timer::budget:
-      budget_over_ = true;
-      emit_if_due();
-      return;
-    case Timer::deadline:
-      emit_if_due();
-      return;
-    case Timer::late_note:
-      late_said_ = true;
-      say(Level::note, "late",
-          fmt::format("the call is late: expected {}, {} ago", clock_text(instant_at(*expected_s_)), overdue()));
-      return;
-    case Timer::late_alert:
-      late_said_ = true;
-      say(Level::alert, "late",
-          fmt::format("the second call is missed: expected {}, {} ago", clock_text(instant_at(*expected_s_)),
-                      overdue()));
-      return;
-    case Timer::late_page:
-      late_said_ = true;
-      say(Level::page, "late",
-          fmt::format("no call for {} after it was expected ({})", overdue(), clock_text(instant_at(*expected_s_))));
-      return;
-  }
-}
-
 // ---- steering the pilot ---------------------------------------------------------------------------------------------
 
 void Pilot::on(const MissionChanged& e) {
@@ -678,8 +633,7 @@ void Pilot::take_over(const MissionChanged& change) {
 /// window is open (trust.md 6.2).
 void Pilot::on(const Restarted& e) {
   if (!last_ || stage_ == Stage::idle) return;
-  if (stage_ == Stage::dived || stage_ == Stage::queued || stage_ == Stage::kept || stage_ == Stage::stood_down)
-    expect_next();
+  watch_for_call();  // ticks of before the restart may be of another boot
   if (stage_ == Stage::dived) return;
   // Ticks of before the restart may be of another boot: the deadline is rebuilt from UTC.
   const Seconds cap = mission_ ? mission_->window_max : Seconds{900};

@@ -69,6 +69,7 @@ class Pilot {
   void on(const WindowExtended& e);
   void on(const DiveBegan& e);
   void on(const TransferHeard& e);
+  void on(const TransferFailed& e);
   void on(const ListReread& e);
   void on(const CandidateFound& e);
   void on(const PlanningEnded& e);
@@ -100,6 +101,7 @@ class Pilot {
   void set_mission(std::optional<Mission> mission);
 
   // after the emission (pilot_delivery.cpp)
+  [[nodiscard]] bool is_of_our_name(const std::string& file) const;
   void hear_waypoint(const model::Surfacing& s);
   void tell_file(const std::string& code, const std::string& text, Level level = Level::info);
   [[nodiscard]] bool is_queued_file(const Candidate& candidate) const;
@@ -117,13 +119,18 @@ class Pilot {
   void keep(const std::string& code, const std::string& why);
   void set_deadline(Tick deadline);
   [[nodiscard]] Ranked* best_proven();
-  void expect_next();
   void take_over(const MissionChanged& change);
   void arrive_if_there(const model::Surfacing& s);
   void greet(const model::Surfacing& s);
-  [[nodiscard]] std::string compared_with_expected(const model::Surfacing& s);
-  void expect_place();
   [[nodiscard]] std::string measured_text() const;
+
+  // watching (pilot_watch.cpp)
+  void expect_next();
+  void expect_place();
+  void watch_for_call();
+  [[nodiscard]] std::string compared_with_expected(const model::Surfacing& s);
+  void tell_far_off();
+  [[nodiscard]] std::string overdue() const;
 
   // saying
   void say(Level level, std::string code, std::string text);
@@ -174,6 +181,8 @@ class Pilot {
   FileOnItsWay file_;
   std::optional<QueuedFile> emitting_;
   bool waypoint_told_{};
+  bool failure_told_{};   ///< of the transfer that is or was under way
+  bool half_on_board_{};  ///< the last transfer of a list failed, and none ended since
 
   // what was promised for the next one
   struct Expectation {
@@ -183,7 +192,8 @@ class Pilot {
   };
   std::optional<Expectation> expected_;
   std::optional<double> expected_s_;
-  bool late_said_{};
+  bool late_said_{}, far_off_said_{};
+  std::optional<std::string> far_off_;  ///< waits for the proof that the glider flew our list
 
   std::uint64_t serials_[5]{};
 };

@@ -20,9 +20,16 @@ bool Pilot::is_queued_file(const Candidate& candidate) const {
   return file_.file() && file_.file()->surfacing != key_ && candidate.file_bytes == file_.file()->bytes;
 }
 
+/// A file of the list's name, ours or a human's; without a mission no file is.
+bool Pilot::is_of_our_name(const std::string& file) const {
+  return mission_ && lower(file).ends_with(fmt::format("goto_l{:02}.ma", mission_->slot));
+}
+
 void Pilot::on(const TransferHeard& e) {
-  if (mission_ && !lower(e.file).ends_with(fmt::format("goto_l{:02}.ma", mission_->slot))) return;
+  if (!is_of_our_name(e.file)) return;
   transfer_began_ = true;
+  failure_told_ = false;
+  if (e.ended) half_on_board_ = false;
   const std::string name = file_.file() ? file_.file()->name : e.file;
   if (!e.ended) {
     const bool ours = file_.transfer_began();
@@ -35,8 +42,27 @@ void Pilot::on(const TransferHeard& e) {
                              : "the file went to the glider");
 }
 
+/// What lies in to-glider after this is asked of the folder: dockservers differ in whether they take a file away that did
+/// not arrive.
+void Pilot::on(const TransferFailed& e) {
+  if (!is_of_our_name(e.file) || failure_told_) return;
+  failure_told_ = half_on_board_ = transfer_began_ = true;
+  const bool ours = file_.transfer_failed();
+  tell_file("transfer-failed",
+            fmt::format("the transfer of {} failed: half of it may be on the glider, send it again before Ctrl-F{}",
+                        ours ? file_.file()->name : e.file,
+                        ours ? "; what still lies in to-glider then is judged again at the next surfacing" : ""),
+            Level::alert);
+  out_.push_back(InspectFolder{});
+}
+
 void Pilot::on(const ListReread&) {
-  if (file_.list_reread())
+  if (half_on_board_)
+    tell_file("reread",
+              "the glider reads its lists again after a transfer that failed: half a list may be in force; its next "
+              "Waypoint: line tells",
+              Level::alert);
+  else if (file_.list_reread())
     tell_file("reread", fmt::format("the glider reads its lists again, {} with them; its next Waypoint: line will "
                                     "prove it",
                                     file_.file()->name));
@@ -53,8 +79,10 @@ void Pilot::on(const ListReread&) {
 void Pilot::hear_waypoint(const model::Surfacing& s) {
   if (!s.aim) return;
   if (file_.waypoint_heard(s.aim->at)) {
+    half_on_board_ = false;
     tell_file("flying", fmt::format("the glider flies our list: it steers to waypoint {} of {}, {}",
                                     file_.number_of(s.aim->at).value_or(0), file_.file()->name, place(s.aim->at)));
+    tell_far_off();
     return;
   }
   if (waypoint_told_ || file_.state() == Delivery::none || file_.state() == Delivery::flying) return;
@@ -77,7 +105,14 @@ void Pilot::on(const FolderSeen& e) {
   const bool open = stage_ != Stage::idle && stage_ != Stage::dived && stage_ != Stage::stood_down;
   switch (e.found) {
     case Found::nothing:
-      if (file_.seen_no_file())
+      if (!file_.seen_no_file()) return;
+      if (file_.state() == Delivery::unknown)
+        tell_file("gone",
+                  fmt::format("{} is gone from to-glider, and its transfer failed: only the glider's next Waypoint: "
+                              "line tells what it flies",
+                              file_.file()->name),
+                  Level::note);
+      else
         tell_file("gone", fmt::format("{} is gone from to-glider: picked up, most likely; the glider's next Waypoint: "
                                       "line will prove what it flies",
                                       file_.file()->name));
@@ -144,6 +179,7 @@ void Pilot::note_exchange() {
     tell_file("exchanged", fmt::format("the {} that still lay there, of the surfacing {}, was exchanged for this one",
                                        file_.file()->name, file_.file()->surfacing));
   file_.queued(*std::exchange(emitting_, std::nullopt));
+  far_off_.reset();  // where the glider came up says nothing of the new list
 }
 
 }  // namespace glidehelm::mission

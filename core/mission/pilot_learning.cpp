@@ -6,17 +6,14 @@
 #include "core/mission/pilot.hpp"
 #include "core/mission/wording.hpp"
 
-// What the pilot learns from surfacings, and what it expects of the next one.
+// What the pilot learns from surfacings.
 namespace glidehelm::mission {
 
 namespace {
 
-constexpr double kPostFix = 60.0;        // s: from the resumed mission to the dive (slocum.md 4.6)
-constexpr double kFarOff = 3.0;          // standard deviations
-constexpr double kLeastFarOff = 1000.0;  // m
-constexpr double kForecastError = 0.10;  // m/s: of a forecast that nothing was measured against
-constexpr double kTold = 0.02;           // a change of speed or times by this share is said
-constexpr double kToldTurn = 1.0;        // degrees
+constexpr double kPostFix = 60.0;  // s: from the resumed mission to the dive (slocum.md 4.6)
+constexpr double kTold = 0.02;     // a change of speed or times by this share is said
+constexpr double kToldTurn = 1.0;  // degrees
 
 bool differs(double a, double b) { return std::abs(a - b) > kTold * std::abs(b); }
 
@@ -128,41 +125,6 @@ void Pilot::tell_learned() {
                     in_degrees(now.heading_bias_spread)));
   if (times || first) told_.stint = now.stint, told_.surface = now.surface;
   if (speed || first) told_.speed = now.speed, told_.heading_bias = now.heading_bias;
-}
-
-// ---- what is expected -----------------------------------------------------------------------------------------------
-
-/// Where the next surfacing is promised, and how far off it may be: error of the forecast, speed, heading and length of
-/// the stint, each over the stint.
-void Pilot::expect_place() {
-  expected_.reset();
-  const Ranked* best = best_proven();
-  if (best == nullptr) return;
-  const double t = learned_.stint.count(), u = learned_.speed.si();
-  const double current = learned_.correction ? learned_.correction->spread.si() : kForecastError;
-  Expectation e;
-  e.at = best->candidate.promise.next_surfacing;
-  const auto& stints = best->candidate.plan.stints;
-  e.heading = stints.empty() ? Heading{last_ ? geodesic(last_->fix, e.at).departing.from_north() : Radians{}}
-                             : stints.front().heading;
-  e.along = std::hypot(t * current, std::hypot(t * learned_.speed_spread.si(), u * learned_.stint_spread.count()));
-  e.across = std::hypot(t * current, t * u * learned_.heading_bias_spread.si());
-  expected_ = e;
-}
-
-/// How far a fix is from where it was expected; one that is far off raises an alert when the glider flew our list.
-std::string Pilot::compared_with_expected(const model::Surfacing& s) {
-  if (!expected_) return "";
-  const auto off = geodesic(expected_->at, s.fix);
-  const Radians turn = off.departing + Radians{-expected_->heading.from_north().si()} - Bearing{};
-  const double along = off.length.si() * std::cos(turn.si()), across = off.length.si() * std::sin(turn.si());
-  const double sigmas = std::hypot(along / expected_->along, across / expected_->across);
-  if (sigmas > kFarOff && off.length.si() > kLeastFarOff && file_.state() == Delivery::flying)
-    say(Level::alert, "far-off",
-        fmt::format("the glider came up {:.1f} km from where it was expected, {:.1f} standard deviations away",
-                    off.length.si() / 1000, sigmas));
-  return fmt::format(", {:.1f} km from where it was expected (to within {:.1f} km along its way and {:.1f} km across)",
-                     off.length.si() / 1000, expected_->along / 1000, expected_->across / 1000);
 }
 
 /// What the glider measured, as it believes it; marked where nothing is learned from it.

@@ -34,7 +34,7 @@ TEST_CASE("the smallest daemon file has one glider and defaults for the rest") {
   const auto file = read("gliders:\n  - " + kGlider + "\n");
   DaemonConfig wanted;
   wanted.missions = {"/etc/glidehelm/missions.d/*.yaml"};
-  wanted.gliders = {GliderEntry{"sim01", Listen{Endpoint{"127.0.0.1", 6500}, {}}, "/g/sim01/to-glider", false}};
+  wanted.gliders = {GliderEntry{"sim01", Listen{Endpoint{"127.0.0.1", 6500}, {}}, "/g/sim01/to-glider", {}, false}};
   CHECK(file.config == wanted);
   CHECK_FALSE(file.config.simulated_clock);
   CHECK(file.config.state_dir == "/var/lib/glidehelm");
@@ -158,4 +158,51 @@ TEST_CASE("the daemon's values in force read back to the same") {
   REQUIRE(again);
   CHECK(again->config == file.config);
   CHECK(file.effective.find("control_socket: /run/glidehelm/control.sock") != std::string::npos);
+}
+
+TEST_CASE("texts of a dialog replace the usual ones key by key") {
+  const auto file = read(
+      "gliders: [{name: a, to_glider: /g/a, line: {listen: \"127.0.0.1:1\"}, dialog: {reread: [\"Mafiles: again\", "
+      "Re-read], "
+      "transfer_failed: [\"! ERROR sending\"]}}]\n");
+  const protocol::DialogWords usual;
+  const auto& words = file.config.gliders.at(0).dialog;
+  CHECK(words.reread == std::vector<std::string>{"Mafiles: again", "Re-read"});
+  CHECK(words.transfer_failed == std::vector<std::string>{"! ERROR sending"});
+  CHECK(words.transfer_starts == usual.transfer_starts);
+  CHECK(words.transfer_done == usual.transfer_done);
+  CHECK(words.command_succeeded == usual.command_succeeded);
+  CHECK(words.command_failed == usual.command_failed);
+  CHECK(words.nothing_to_send == usual.nothing_to_send);
+  const auto again = read_daemon_file(file.effective, "/etc/glidehelm/d.yaml");
+  REQUIRE(again);
+  CHECK(again->config == file.config);
+}
+
+TEST_CASE("a text of a dialog that could not be heard is named with its place") {
+  struct Row {
+    const char* dialog;
+    Lines errors;
+  };
+  const auto row = GENERATE(values<Row>({
+      {"{reread: []}",
+       {"2:86 gliders[0].dialog.reread: a list of another length; found 0; allowed: a list of 1 to 16"}},
+      {"{reread: [x]}",
+       {"2:87 gliders[0].dialog.reread[0]: not of the form that is needed; found x; allowed: 2 to 120 printable ASCII "
+        "characters, no blank at either end"}},
+      {"{reread: [\"MAFILES \"]}",
+       {"2:87 gliders[0].dialog.reread[0]: not of the form that is needed; found \"MAFILES \"; allowed: 2 to 120 "
+        "printable "
+        "ASCII characters, no blank at either end"}},
+      {"{reread: [again, again]}", {"2:94 gliders[0].dialog.reread[1]: stands twice; found again"}},
+      {"{transfer_done: [ended], transfer_failed: [ended]}",
+       {"2:120 gliders[0].dialog.transfer_failed[0]: is also a text of transfer_done; found ended"}},
+      {"{transfer_failed: [zModem transfer DONE for file]}",
+       {"2:96 gliders[0].dialog.transfer_failed[0]: is also a text of transfer_done; found zModem transfer DONE for "
+        "file"}},
+      {"{rereads: [again]}", {"2:78 gliders[0].dialog.rereads: unknown key; did you mean reread?"}},
+  }));
+  CAPTURE(row.dialog);
+  CHECK(errors("gliders: [{name: a, to_glider: /g/a, line: {listen: \"127.0.0.1:1\"}, dialog: " +
+               std::string{row.dialog} + "}]\n") == row.errors);
 }

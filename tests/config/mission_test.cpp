@@ -198,6 +198,12 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
        {"7:29 safety.min_water_depth_m: depth limits need bathymetry, which this version does not read; leave the key "
         "out"}},
       {"list: {slot: 100}\n", {"7:14 list.slot: out of range; found 100; allowed: 0 to 99"}},
+      {"list: {slot: -1}\n", {"7:14 list.slot: out of range; found -1; allowed: 0 to 99"}},
+      {"list: {slot: 1.5}\n", {"7:14 list.slot: not a whole number; found 1.5; allowed: 0 to 99"}},
+      {"glider_mission: ninechars.mi\n",
+       {"7:17 glider_mission: not of the form that is needed; found ninechars.mi; allowed: 1 to 8 of a–z, 0–9, _ and "
+        "-, "
+        "then .mi"}},
       {"list: {slot: 08}\n",
        {"7:14 list.slot: a number with a leading zero, which YAML may read as octal; found 08; allowed: 0 to 99, "
         "without the zero"}},
@@ -210,8 +216,8 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
         "at_surface?"}},
       {"after_goal: leg-3\n", {"7:13 after_goal: not of the form that is needed; found leg-3; allowed: `next NAME`"}},
       {"glider_mission: ../esp.mi\n",
-       {"7:17 glider_mission: not of the form that is needed; found ../esp.mi; allowed: a name of a–z, 0–9, _ and - "
-        "that ends in .mi"}},
+       {"7:17 glider_mission: not of the form that is needed; found ../esp.mi; allowed: 1 to 8 of a–z, 0–9, _ and -, "
+        "then .mi"}},
       {"start: {lat_deg: 28}\n", {"7:8 start.lon_deg: missing; start.lat_deg is set"}},
       {"start: {lon_deg: 28}\n", {"7:8 start.lat_deg: missing; start.lon_deg is set"}},
       {"start: {lat_deg: 120, lon_deg: 28}\n",

@@ -339,3 +339,87 @@ TEST_CASE("a file must have been left alone for ten seconds, but a simulated clo
   const auto& then = post.world.procs.requests.back().arguments;
   CHECK(std::find(then.begin(), then.end(), "--settle") == then.end());
 }
+
+namespace {
+
+/// A watch of currents by formula.
+struct Lookout {
+  test::ManualWorld world;
+  std::vector<std::string> story;
+  std::unique_ptr<daemon::ForecastWatch> watch;
+
+  Lookout() {
+    for (const char* folder : {"/forecasts", "/grids"}) world.files.make_folder_at(folder);
+    watch = std::make_unique<daemon::ForecastWatch>(
+        world.world(), "/grids",
+        daemon::ForecastWatch::Handlers{[this](const std::shared_ptr<const daemon::OceanSource>& ocean) {
+                                          story.push_back("loaded " + name(*ocean));
+                                        },
+                                        [this](const std::string& problem) { story.push_back("refused " + problem); }});
+  }
+  static std::string name(const daemon::OceanSource& ocean) {
+    return ocean.analytic.empty() ? "files" : ocean.analytic[0].kind;
+  }
+  void settle() { world.net.settle(); }
+};
+
+mission::Mission by_formula(double east = 0.1) {
+  mission::Mission m;
+  m.goal = geo_point(29.1667, -15.5);
+  ocean::AnalyticSpec spec;
+  spec.kind = "constant";
+  spec.origin = geo_point(28, -15);
+  spec.length_scale = Metres{1};
+  spec.speed_scale = MetresPerSecond{1};
+  spec.params = {{"u", east}, {"v", 0}};
+  m.currents.analytic = {spec};
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("a formula is loaded once, from the loop, and looking again changes nothing") {
+  Lookout lookout;
+  lookout.watch->follow(by_formula());
+  CHECK(lookout.watch->loading());
+  CHECK(lookout.story.empty());
+  lookout.settle();
+  CHECK_FALSE(lookout.watch->loading());
+  REQUIRE(lookout.watch->current());
+  lookout.watch->look();
+  lookout.watch->follow(by_formula());
+  lookout.settle();
+  CHECK(lookout.story == std::vector<std::string>{"loaded constant"});
+}
+
+TEST_CASE("other currents are loaded anew, and a plan that runs keeps the forecast that it began with") {
+  Lookout lookout;
+  lookout.watch->follow(by_formula(0.1));
+  lookout.settle();
+  const auto in_use = lookout.watch->current();
+  lookout.watch->follow(by_formula(0.2));
+  CHECK_FALSE(lookout.watch->current());  // nothing is planned on the currents of another mission
+  lookout.settle();
+  REQUIRE(lookout.watch->current());
+  CHECK(lookout.watch->current() != in_use);
+  CHECK(in_use->analytic[0].params.at(0).second == 0.1);
+  CHECK(lookout.watch->current()->analytic[0].params.at(0).second == 0.2);
+}
+
+TEST_CASE("what was being loaded for a mission that is no longer followed is dropped") {
+  Lookout lookout;
+  lookout.watch->follow(by_formula(0.1));
+  lookout.watch->follow(by_formula(0.2));
+  lookout.settle();
+  CHECK(lookout.story.size() == 1);
+  REQUIRE(lookout.watch->current());
+  CHECK(lookout.watch->current()->analytic[0].params.at(0).second == 0.2);
+}
+
+TEST_CASE("a watch that is gone is not called any more") {
+  Lookout lookout;
+  lookout.watch->follow(by_formula());
+  lookout.watch.reset();
+  lookout.settle();
+  CHECK(lookout.story.empty());
+}

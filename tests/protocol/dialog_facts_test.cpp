@@ -158,6 +158,25 @@ TEST_CASE("commands and transfers tell how they ended") {
   CHECK_FALSE(facts_of("zModem transfer DONE for file ").front().whole);
 }
 
+TEST_CASE("a file's name follows its words behind any blanks, and is never the tail of a longer word") {
+  DialogWords words;
+  words.transfer_failed = {"Could not send", "ERROR:"};
+  const auto failed = [&](const std::string& line) {
+    const auto facts = facts_of(line, Line::kWhole, words);
+    REQUIRE(facts.size() == 1);
+    REQUIRE(facts.front().say == Say::transfer_failed);
+    return facts.front().whole ? std::get<std::string>(facts.front().value) : std::string{"damaged"};
+  };
+  CHECK(failed("Could not send goto_l10.ma") == "goto_l10.ma");
+  CHECK(failed("Could not send \t goto_l10.ma, retry") == "goto_l10.ma");
+  CHECK(failed("Could not send \"goto_l10.ma\".") == "goto_l10.ma");
+  CHECK(failed("Could not send ...") == "damaged");
+  CHECK(failed("ERROR:goto_l10.ma") == "goto_l10.ma");
+  CHECK(failed("Could not sendgoto_l10.ma") == "damaged");
+  CHECK(failed("Could not send") == "damaged");
+  CHECK(failed("Could not send   ") == "damaged");
+}
+
 TEST_CASE("the dockserver's words for an empty folder can be replaced") {
   CHECK(FactFinder{DialogWords{}}.nothing_to_send("\nnot found>*<\n"));
   CHECK_FALSE(FactFinder{DialogWords{}}.nothing_to_send("1 file sent\n"));

@@ -402,6 +402,16 @@ TEST_CASE("memory is bounded whatever comes") {
   for (const auto& block : blocks(heard.events)) CHECK(block.sensors.size() <= 512);
 }
 
+TEST_CASE("dockserver blocks without an end are counted apart from those that had one") {
+  std::string text = "<dockserver command=\"dockzr *\">sent</dockserver>\n<dockserver command=\"dockzr *\">\n";
+  for (int i = 0; i < 700; ++i) text += std::string(99, 'x') + "\n";
+  const auto heard = hear_in_chunks(text + test::connection_block(), 4096);
+  CHECK(heard.counts.dockserver_blocks == 2);
+  CHECK(heard.counts.lost_blocks == 1);
+  CHECK(heard.counts.discarded_bytes > 0);
+  CHECK(blocks(heard.events).size() == 1);
+}
+
 TEST_CASE("no change of one byte of a fix line gives another position, unless it makes a digit, a sign or a blank") {
   // A new digit or sign, or a blank for the first of a number, can keep the layout, so only the rules that remember
   // (S5) can see it; all else is seen here.

@@ -82,3 +82,49 @@ TEST_CASE("a transfer that did not end with its call has failed: the file is que
   CHECK(file.seen_in_folder());  // the dockserver left it there: it will be sent again
   CHECK(file.state() == Delivery::queued);
 }
+
+TEST_CASE("a failed transfer leaves the file queued, and unknown once it is gone from the folder") {
+  FileOnItsWay file;
+  CHECK_FALSE(file.transfer_failed());  // none of ours was sent
+  file.queued(file_to(28.5));
+  file.transfer_began();
+  CHECK(file.transfer_failed());
+  CHECK(file.state() == Delivery::queued);
+  CHECK_FALSE(file.seen_in_folder());  // where it was known to be
+  CHECK(file.seen_no_file());
+  CHECK(file.state() == Delivery::unknown);
+  CHECK_FALSE(file.list_reread());  // perhaps of half a list
+  CHECK(file.state() == Delivery::unknown);
+  CHECK(file.waypoint_heard(geo_point(28.5, -15)));
+  CHECK(file.state() == Delivery::flying);
+  CHECK_FALSE(file.transfer_failed());  // it was whole, and is not what failed now
+}
+
+TEST_CASE("a failed transfer that is made good goes on as any other") {
+  FileOnItsWay file;
+  file.queued(file_to(28.5));
+  file.transfer_began();
+  file.transfer_failed();
+  SECTION("from the folder") {
+    CHECK(file.transfer_began());
+    CHECK(file.seen_no_file());
+  }
+  SECTION("after the folder was found empty") {
+    file.seen_no_file();
+    CHECK(file.transfer_ended());
+  }
+  CHECK(file.state() == Delivery::gone);
+  CHECK(file.list_reread());
+}
+
+TEST_CASE("a failure that is heard after the file had gone makes it unknown, whatever came between") {
+  FileOnItsWay file;
+  file.queued(file_to(28.5));
+  file.seen_no_file();
+  SECTION("at once") {}
+  SECTION("after a re-read") { file.list_reread(); }
+  CHECK(file.transfer_failed());
+  CHECK(file.state() == Delivery::unknown);
+  CHECK(file.seen_in_folder());  // the dockserver put it back
+  CHECK(file.state() == Delivery::queued);
+}

@@ -165,3 +165,78 @@ TEST_CASE("a file that is there again after it was gone is judged again at once"
   REQUIRE(desk.last<BeginPlanning>().size() == 1);
   CHECK(desk.last<BeginPlanning>()[0].request.queued);
 }
+
+namespace {
+int times_said(const PilotDesk& desk, std::string_view words) {
+  int count = 0;
+  for (const auto& effects : desk.effects)
+    for (const auto& say : PilotDesk::all<Say>(effects)) count += say.text.find(words) != std::string::npos ? 1 : 0;
+  return count;
+}
+}  // namespace
+
+TEST_CASE("a failed transfer is said once, recorded, queued again and judged at the next surfacing") {
+  PilotDesk desk;
+  emit(desk, 28.5, "0007.0003");
+  desk.step(TransferHeard{"GOTO_L10.MA", false});
+  REQUIRE(desk.pilot.file().state() == Delivery::sending);
+  desk.step(TransferFailed{"GOTO_L10.MA"});
+  CHECK(desk.pilot.file().state() == Delivery::queued);
+  CHECK(desk.last<InspectFolder>().size() == 1);
+  REQUIRE(desk.last<Record>().size() == 1);
+  CHECK(desk.last<Record>()[0].kind == "emission");
+  CHECK(level_of(desk, "the transfer of goto_l10.ma failed: half of it may be on the glider") == Level::alert);
+  desk.step(TransferFailed{"GOTO_L10.MA"});  // the dockserver says it too
+  CHECK(times_said(desk, "the transfer of goto_l10.ma failed") == 1);
+  desk.step(FolderSeen{FolderSeen::Found::ours, "goto_l10.ma"});
+  CHECK(desk.pilot.file().state() == Delivery::queued);
+  dive_and_come_up(desk);
+  desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.55, -15.3), "0007.0004"), std::nullopt});
+  const auto request = desk.last<BeginPlanning>().at(0).request;
+  REQUIRE(request.queued);
+  CHECK(request.queued->bytes == "bytes of 1 1");
+  judge_queued(desk, request);
+  desk.step(PlanningEnded{request.id, "no way was found"});
+  CHECK(desk.pilot.stage() == Stage::queued);
+}
+
+TEST_CASE("each transfer that fails is said, and a re-read of half a list raises an alert until one went well") {
+  PilotDesk desk;
+  emit(desk, 28.5, "0007.0003");
+  for (int failure = 1; failure <= 2; ++failure) {
+    desk.step(TransferHeard{"goto_l10.ma", false});
+    desk.step(TransferFailed{"goto_l10.ma"});
+    CHECK(times_said(desk, "the transfer of goto_l10.ma failed") == failure);
+  }
+  desk.step(ListReread{});
+  CHECK(level_of(desk, "half a list may be in force") == Level::alert);
+  desk.step(TransferHeard{"goto_l10.ma", false});
+  desk.step(TransferHeard{"goto_l10.ma", true});
+  desk.step(ListReread{});
+  CHECK(times_said(desk, "half a list may be in force") == 1);
+  CHECK(desk.pilot.file().state() == Delivery::reread);
+}
+
+TEST_CASE("a file that is gone after its transfer failed is not said to be picked up") {
+  PilotDesk desk;
+  emit(desk, 28.5, "0007.0003");
+  desk.step(TransferHeard{"goto_l10.ma", false});
+  desk.step(TransferFailed{"goto_l10.ma"});
+  desk.step(FolderSeen{FolderSeen::Found::nothing, ""});
+  CHECK(desk.pilot.file().state() == Delivery::unknown);
+  CHECK(level_of(desk, "is gone from to-glider, and its transfer failed") == Level::note);
+  CHECK_FALSE(said(desk, "picked up, most likely"));
+}
+
+TEST_CASE("transfers of other files, and of any file without a mission, are nobody's business") {
+  PilotDesk desk;
+  emit(desk, 28.5, "0007.0003");
+  const auto before = desk.effects.size();
+  for (const char* file : {"01710005.tcd", "goto_l11.ma", "yo10.ma", ""}) {
+    desk.step(TransferHeard{file, false});
+    desk.step(TransferFailed{file});
+  }
+  for (std::size_t i = before; i < desk.effects.size(); ++i) CHECK(desk.effects[i].empty());
+  Pilot idle{"sim01"};
+  CHECK(idle.step({desk.now, TransferFailed{"goto_l10.ma"}}).empty());
+}

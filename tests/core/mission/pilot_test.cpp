@@ -329,28 +329,6 @@ TEST_CASE("another measured current in the at-surface block makes a new plan bef
   CHECK(desk.last<StopPlanning>().size() == 1);
 }
 
-TEST_CASE("a late call is noted, alerted and paged, and an all-clear follows") {
-  PilotDesk desk;
-  desk.surface_and_dive(28.5, -15.3, "0007.0003");
-  std::vector<SetTimer> late;
-  for (const auto& effects : desk.effects)
-    for (const auto& t : PilotDesk::all<SetTimer>(effects))
-      if (t.timer != Timer::budget && t.timer != Timer::deadline) late.push_back(t);
-  REQUIRE(late.size() == 3);
-  CHECK(late[0].at < late[1].at);
-  CHECK(late[1].at < late[2].at);
-  for (const auto& t : late) {
-    desk.now.utc = after(desk.now.utc, Seconds{t.at - desk.now.tick});
-    desk.now.tick = t.at;
-    desk.step(TimerFired{t.timer, t.serial});
-    CHECK(said(desk.effects.back(), "late"));
-  }
-  desk.step(SurfacingHeard{desk.heard(28.53, -15.3), std::nullopt});
-  bool clear = false;
-  for (const auto& say : desk.last<Say>()) clear = clear || (say.level == Level::clear && say.code == "late");
-  CHECK(clear);
-}
-
 TEST_CASE("after a restart inside the window the surfacing is planned again, and never emitted twice") {
   PilotDesk desk;
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(28.5, -15.3)), std::nullopt});

@@ -219,8 +219,8 @@ const Fields<CurrentsItem>& item_fields() {
     variables.text({"north", "variable of the northward velocity", false, "recognised"}, &C::north);
     Fields<C> f;
     f.texts({"files",
-             "forecast files (CF NetCDF); shell patterns; several become one field, the newest cycle wins where they "
-             "overlap",
+             "forecast files (NetCDF); shell patterns, or http:// and https:// addresses of OPeNDAP servers; several "
+             "become one field, the newest cycle wins where they overlap",
              false, "none"},
             &C::files, 1);
     f.custom(
@@ -253,6 +253,19 @@ const Fields<CurrentsItem>& item_fields() {
                                                               {"akima", Interpolation::akima}});
     f.section({"variables", "names of the velocity variables, where they are not recognised"}, variables);
     f.time({"time_epoch", "time 0 of files whose time axis says none", false, "as the files say"}, &C::time_epoch);
+    using Heights = mission::Currents::Heights;
+    f.word({"heights",
+            "currents from the slope of the sea surface (adt, zos, ssh, sla with mdt): where a file has no velocity, "
+            "always, or never"},
+           &C::heights,
+           std::vector<std::pair<std::string, Heights>>{
+               {"auto", Heights::when_needed}, {"always", Heights::always}, {"never", Heights::never}});
+    f.number({"equator_band_deg", "latitude below which the slope of the sea surface says nothing of the current"},
+             &C::equator_band, kPi / 180, from_to(0, 90));
+    f.maybe_number({"fill_gaps_km",
+                    "gaps of surface currents up to this distance are filled from both sides and count as extrapolated",
+                    false, "two cells in files of HF radar, none in others"},
+                   &C::fill_gaps, 1000, from_to(0, 500));
     f.flag({"local_correction", "what the glider measured less what the forecast said is added to it near the glider"},
            &C::local_correction);
     f.number({"correction_length_km", "L: the correction falls with the distance d as exp(−d²/2L²)"},
@@ -330,6 +343,9 @@ void read_currents(const At& at, std::vector<CurrentsItem>& items) {
   share(items, &CurrentsItem::east, "variables.east", at);
   share(items, &CurrentsItem::north, "variables.north", at);
   share(items, &CurrentsItem::time_epoch, "time_epoch", at);
+  share(items, &CurrentsItem::heights, "heights", at);
+  share(items, &CurrentsItem::equator_band, "equator_band_deg", at);
+  share(items, &CurrentsItem::fill_gaps, "fill_gaps_km", at);
   share(items, &CurrentsItem::local_correction, "local_correction", at);
   share(items, &CurrentsItem::correction_length, "correction_length_km", at);
   share(items, &CurrentsItem::correction_time, "correction_time_h", at);
@@ -358,6 +374,9 @@ mission::Currents resolve_currents(const std::vector<CurrentsItem>& items) {
     currents.east_variable = item.east;
     currents.north_variable = item.north;
     currents.time_epoch = item.time_epoch;
+    currents.heights = item.heights;
+    currents.equator_band = item.equator_band;
+    currents.fill_gaps = item.fill_gaps;
     currents.local_correction = item.local_correction;
     currents.correction_length = item.correction_length;
     currents.correction_time = item.correction_time;

@@ -32,6 +32,9 @@ struct CurrentsItem {
   mission::Interpolation interpolation{mission::Interpolation::linear};
   std::string east, north;
   std::optional<Instant> time_epoch;
+  mission::Currents::Heights heights{mission::Currents{}.heights};
+  Radians equator_band{mission::Currents{}.equator_band};
+  std::optional<Metres> fill_gaps;
   bool local_correction{mission::Currents{}.local_correction};
   Metres correction_length{mission::Currents{}.correction_length};
   Seconds correction_time{mission::Currents{}.correction_time};

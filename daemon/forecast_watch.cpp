@@ -10,8 +10,9 @@ namespace glidehelm::daemon {
 
 namespace {
 
-constexpr Seconds kSettle{10};     // how long a published file must have been left alone
-constexpr Seconds kTryAgain{600};  // after a reason that passes
+constexpr Seconds kSettle{10};         // how long a published file must have been left alone
+constexpr Seconds kTryAgain{600};      // after a reason that passes
+constexpr double kLookAgain_s = 3600;  // at an address
 constexpr double kExpired_s = 72 * 3600.0, kFuture_s = 24 * 3600.0;
 
 /// A child cannot wait on a clock that stands still: in a simulated world files are complete when they are there.
@@ -53,16 +54,22 @@ void ForecastWatch::follow(const mission::Mission& mission) {
   look();
 }
 
-/// Names and looks of the files: enough to see that something new is there.
+/// Names and looks of the files: enough to see that something new is there. An address shows nothing from outside: it looks
+/// new once an hour.
 std::string ForecastWatch::fingerprint() const {
   std::string text = "formula";
-  for (const auto& pattern : mission_->currents.files)
+  for (const auto& pattern : mission_->currents.files) {
+    if (pattern.find("://") != std::string::npos) {
+      text += fmt::format("\n{} in hour {:.0f}", pattern, std::floor(epoch_seconds(world_.clock.utc()) / kLookAgain_s));
+      continue;
+    }
     for (const auto& path : world_.files.glob(pattern)) {
       const auto stat = world_.files.stat(path);
       const auto identity = stat ? FileIdentity::of(*stat) : FileIdentity{};
       text += fmt::format("\n{} {} {} {} {}", path, identity.inode, identity.size, identity.modified_ns,
                           identity.changed_ns);
     }
+  }
   return text;
 }
 

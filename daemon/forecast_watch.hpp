@@ -16,7 +16,7 @@ namespace glidehelm::daemon {
 /// Files that cannot be used leave the last good forecast in use, also after a restart (GridCache::accepted): a bad file is
 /// left out where the others are whole without it, and they replace what is in use only when they are not older. What was
 /// refused is not read again until it changes; what may pass (a file still being written, a child that could not start) is
-/// tried again every ten minutes.
+/// tried again every ten minutes. The address of an OPeNDAP server is asked anew when an hour has begun.
 class ForecastWatch {
  public:
   struct Handlers {

@@ -54,6 +54,17 @@ std::vector<std::string> reading_arguments(const IngestOptions& options) {
     arguments.emplace_back("--time-epoch");
     arguments.push_back(utc_text(*options.time_epoch));
   }
+  const auto number_option = [&](const char* name, const std::optional<double>& value) {
+    if (!value) return;
+    arguments.emplace_back(name);
+    arguments.push_back(decimal(*value));
+  };
+  if (!options.heights.empty()) {
+    arguments.emplace_back("--heights");
+    arguments.push_back(options.heights);
+  }
+  number_option("--equator-band", options.equator_band_deg);
+  number_option("--fill-gaps", options.fill_gaps_km);
   if (options.area) {
     // One word with "=": a western edge begins with a minus sign.
     arguments.push_back("--area=" + decimal(options.area->west_deg) + "/" + decimal(options.area->east_deg) + "/" +

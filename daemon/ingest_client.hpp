@@ -20,6 +20,8 @@ struct IngestOptions {
     double west_deg{}, east_deg{}, south_deg{}, north_deg{};
   };
   std::optional<Area> area;  ///< part to keep; none: all
+  std::string heights;       ///< "always", "never"; empty: currents from heights where a file has no velocity
+  std::optional<double> equator_band_deg, fill_gaps_km;  ///< none: as glidehelm-ingest has it
   std::string keep_in;       ///< folder where the grid keeps its name (another process maps it too); empty: none
   Seconds deadline{300};     ///< on the wall; longer than the CPU time that the child may use
   /// Of the child, bytes; 0: no limit. Enough for a file of 4 GB beside its grid.

@@ -38,6 +38,13 @@ IngestOptions ingest_options(const OceanOrder& order) {
   options.east = order.mission.currents.east_variable;
   options.north = order.mission.currents.north_variable;
   options.time_epoch = order.mission.currents.time_epoch;
+  using Heights = mission::Currents::Heights;
+  const auto& currents = order.mission.currents;
+  if (currents.heights != Heights::when_needed)
+    options.heights = currents.heights == Heights::always ? "always" : "never";
+  if (currents.equator_band != mission::Currents{}.equator_band)
+    options.equator_band_deg = currents.equator_band.si() * 180 / kPi;
+  if (currents.fill_gaps) options.fill_gaps_km = currents.fill_gaps->si() / 1000;
   options.keep_in = order.grids;
   options.cache = order.cache;
   options.settle = order.settle;

@@ -31,6 +31,10 @@ struct Currents {
   Interpolation interpolation{Interpolation::linear};
   std::string east_variable, north_variable;  ///< empty: recognised
   std::optional<Instant> time_epoch;          ///< for files whose time axis has no units
+  enum class Heights { when_needed, always, never };
+  Heights heights{Heights::when_needed};  ///< heights: currents from the slope of the sea surface
+  Radians equator_band{degrees(5)};       ///< equator_band_deg: latitude below which that slope says nothing
+  std::optional<Metres> fill_gaps;        ///< fill_gaps_km; none: two cells of HF radar files
   double coastal_fill_cells{1.5};
   bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
   Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …

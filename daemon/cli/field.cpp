@@ -87,10 +87,15 @@ void print_info(const ocean::GridView& view, std::ostream& out) {
   const auto& facts = view.facts;
   const auto statistics = ocean::statistics_of(view);
   const auto unit = [](const std::string& text) { return text.empty() ? std::string{"no unit, taken as m/s"} : text; };
-  out << "forecast   " << facts.cycle << '\n'
-      << "variables  " << facts.east_variable << " (" << unit(facts.east_unit) << "), " << facts.north_variable << " ("
-      << unit(facts.north_unit) << "), by " << facts.recognised_by << '\n'
-      << "grid       rectilinear, " << axes.lats_deg.size() << " latitudes " << decimal(axes.lats_deg.front(), 4)
+  out << "forecast   " << facts.cycle << '\n';
+  // "computed from heights: adt, …": then the variable is no velocity.
+  if (facts.recognised_by.rfind("computed from heights", 0) == 0)
+    out << "variables  " << facts.east_variable << " (" << (facts.east_unit.empty() ? "no unit" : facts.east_unit)
+        << "); the current is " << facts.recognised_by << '\n';
+  else
+    out << "variables  " << facts.east_variable << " (" << unit(facts.east_unit) << "), " << facts.north_variable
+        << " (" << unit(facts.north_unit) << "), by " << facts.recognised_by << '\n';
+  out << "grid       rectilinear, " << axes.lats_deg.size() << " latitudes " << decimal(axes.lats_deg.front(), 4)
       << " to " << decimal(axes.lats_deg.back(), 4) << ", " << axes.lons_deg.size() << " longitudes "
       << decimal(axes.lons_deg.front(), 4) << " to " << decimal(axes.lons_deg.back(), 4) << '\n';
   if (axes.has_time)

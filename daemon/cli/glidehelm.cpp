@@ -155,12 +155,40 @@ void add_mafile(CLI::App& app, Action& action) {
   });
 }
 
+/// How files are read, where they do not say it themselves or are to be read in another way.
+void add_reading(CLI::App* verb, daemon::IngestOptions& ingest) {
+  verb->add_option_function<std::string>(
+      "--variables",
+      [&ingest](const std::string& text) {
+        const auto comma = text.find(',');
+        if (comma == std::string::npos || comma == 0 || comma + 1 == text.size())
+          throw CLI::ValidationError{"--variables", "allowed is EAST,NORTH"};
+        ingest.east = text.substr(0, comma);
+        ingest.north = text.substr(comma + 1);
+      },
+      "EAST,NORTH: names of the velocity variables");
+  verb->add_option_function<std::string>(
+      "--time-epoch", [&ingest](const std::string& text) { ingest.time_epoch = time_from(text, "--time-epoch"); },
+      "Time 0 of a time axis that does not say it, UTC");
+  verb->add_option("--heights", ingest.heights, "Currents from the slope of the sea surface")
+      ->check(CLI::IsMember({"auto", "always", "never"}));
+  verb->add_option_function<double>(
+          "--equator-band", [&ingest](double value) { ingest.equator_band_deg = value; },
+          "Degrees of latitude within which that slope says nothing (default 5)")
+      ->check(CLI::Range(0.0, 90.0));
+  verb->add_option_function<double>(
+          "--fill-gaps", [&ingest](double value) { ingest.fill_gaps_km = value; },
+          "Km up to which gaps of surface currents are filled (default: two cells of HF radar)")
+      ->check(CLI::Range(0.0, 500.0));
+}
+
 void add_field(CLI::App& app, Action& action) {
   auto* field = app.add_subcommand("field", "What a forecast is, and what it says at a place");
   field->require_subcommand(1);
   auto info = std::make_shared<cli::FieldInfoOptions>();
   auto* verb = field->add_subcommand("info", "Variables recognised and why, grid, times, depths, speeds, warnings");
   verb->add_option("FILE", info->files, "NetCDF files or shell patterns; several join into one field")->required();
+  add_reading(verb, info->ingest);
   verb->add_flag("--json", info->json, "One JSON document on standard output");
   verb->callback([info, &action] {
     action = [info](world::World& w) { return cli::run_field_info(*info, w, std::cout, std::cerr); };
@@ -179,6 +207,7 @@ void add_field(CLI::App& app, Action& action) {
   auto* time = sample->add_option("--time", o->time, "UTC");
   auto* depth = sample->add_option("--depth", o->depth, "Metres below the surface (default: the shallowest level)");
   auto* mean = sample->add_option("--depth-mean", o->mean, "MIN,MAX: mean between two depths, metres");
+  add_reading(sample, o->options.ingest);
   sample->add_option("--points", o->options.points, "CSV of lat,lon,time[,depth]");
   sample->add_flag("--json", o->options.json, "One JSON document on standard output");
   sample->callback([=, &action] {

@@ -340,6 +340,33 @@ TEST_CASE("a file must have been left alone for ten seconds, but a simulated clo
   CHECK(std::find(then.begin(), then.end(), "--settle") == then.end());
 }
 
+TEST_CASE("an address shows nothing from outside: it is asked anew when an hour has begun") {
+  Post post;
+  const std::string address = "http://server/sea";
+  post.world.files.make_folder_at("http://server");
+  const auto serve = [&](double east) {
+    std::ostringstream text;
+    text.precision(17);
+    text << "good " << east << " " << post.now_s() << " " << post.now_s() - 3600 << " 96";
+    post.world.files.put(address, text.str());
+  };
+  serve(0.125);
+  post.mission = mission_of({address});
+  post.follow();
+  REQUIRE(post.watch->current());
+  CHECK(post.east() == 0.125);
+  const auto children = post.shelf.children();
+  serve(0.5);
+  post.look();
+  CHECK(post.shelf.children() == children);
+  for (int i = 0; i < 61; ++i) {
+    post.world.pass(Seconds{60});
+    post.look();
+  }
+  CHECK(post.shelf.children() == children + 1);
+  CHECK(post.east() == 0.5);
+}
+
 namespace {
 
 /// A watch of currents by formula.

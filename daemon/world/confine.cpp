@@ -99,7 +99,7 @@ void answer(Filter& filter, long number, std::uint32_t verdict) {
   filter.push_back(statement(BPF_RET | BPF_K, verdict));
 }
 
-Filter forbidden_calls(bool network) {
+[[maybe_unused]] Filter forbidden_calls(bool network) {
   Filter filter;
   filter.push_back(statement(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, arch)));
   filter.push_back(jump(BPF_JMP | BPF_JEQ | BPF_K, kMachine, 1, 0));

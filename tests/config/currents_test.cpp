@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "config/mission.hpp"
+#include "config/paths.hpp"
 #include "core/base/utc.hpp"
 #include "core/ocean/analytic.hpp"
 #include "tests/support/config.hpp"
@@ -123,6 +124,23 @@ TEST_CASE("a list under currents adds fields, which share one way of reading fil
   REQUIRE(c.analytic.size() == 2);
   CHECK(c.analytic[1].kind == "stuart");
   CHECK(read("currents: [{files: [a.nc]}]\n").files.size() == 1);
+}
+
+TEST_CASE("heights and gaps are read as the mission says, and as the files say where it does not") {
+  const auto c = read("currents: {files: [a.nc], heights: always, equator_band_deg: 2.5, fill_gaps_km: 12}\n");
+  CHECK(c.heights == mission::Currents::Heights::always);
+  CHECK(c.equator_band.si() == Approx(2.5 * kPi / 180).epsilon(1e-15));
+  REQUIRE(c.fill_gaps);
+  CHECK(c.fill_gaps->si() == 12'000);
+  const auto plain = read("currents: {files: [a.nc]}\n");
+  CHECK(plain.heights == mission::Currents::Heights::when_needed);
+  CHECK(plain.equator_band == mission::Currents{}.equator_band);
+  CHECK_FALSE(plain.fill_gaps);
+}
+
+TEST_CASE("an address under currents is no name of a file beside the mission") {
+  CHECK(config::path_beside("/etc/glidehelm/leg.yaml", "http://server/sea") == "http://server/sea");
+  CHECK(config::path_beside("/etc/glidehelm/leg.yaml", "currents/a.nc") == "/etc/glidehelm/currents/a.nc");
 }
 
 TEST_CASE("mistakes under currents are named with their place") {

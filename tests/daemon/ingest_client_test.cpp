@@ -170,15 +170,18 @@ TEST_CASE("the child is told which files, where to write and how to read, and no
   options.north = "vo";
   options.time_epoch = utc_from_text("2000-01-01");
   options.area = IngestOptions::Area{-10.5, 5, 30, 45};
+  options.heights = "always";
+  options.equator_band_deg = 2.5;
+  options.fill_gaps_km = 12;
   options.deadline = Seconds{7};
   options.memory_at_most = 1 << 30;
   const auto loaded = ingest_files({"/data/*.nc", "/more/c.nc"}, options, desk.world);
   REQUIRE(loaded);
   CHECK(desk.child.asked.program == "glidehelm-ingest");
-  CHECK(desk.child.asked.arguments == std::vector<std::string>{"-o", "/scratch/glidehelm-42.grid", "--tell",
-                                                               "--variables", "uo,vo", "--time-epoch",
-                                                               "2000-01-01T00:00:00Z", "--area=-10.5/5/30/45", "--",
-                                                               "/data/a.nc", "/data/b.nc", "/more/c.nc"});
+  CHECK(desk.child.asked.arguments ==
+        std::vector<std::string>{"-o", "/scratch/glidehelm-42.grid", "--tell", "--variables", "uo,vo", "--time-epoch",
+                                 "2000-01-01T00:00:00Z", "--heights", "always", "--equator-band", "2.5", "--fill-gaps",
+                                 "12", "--area=-10.5/5/30/45", "--", "/data/a.nc", "/data/b.nc", "/more/c.nc"});
   CHECK(desk.child.asked.deadline == Seconds{7});
   CHECK(desk.child.asked.memory_at_most == kLimitOfMemory);
   CHECK(desk.child.asked.file_at_most == 1 << 30);

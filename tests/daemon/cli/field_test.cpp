@@ -125,6 +125,18 @@ TEST_CASE("field info reads for people too") {
   CHECK(said.out.find("times      2, 2024-05-01T00:00:00Z to 2024-05-01T01:00:00Z") != std::string::npos);
 }
 
+TEST_CASE("field info says when the current is computed from heights") {
+  const test::ScratchFolder folder;
+  const auto file = test::make_netcdf(folder, "adt.nc", R"(netcdf adt { dimensions: lat = 3 ; lon = 3 ;
+variables: float lat(lat) ; lat:units = "degrees_north" ; float lon(lon) ; lon:units = "degrees_east" ;
+  float adt(lat, lon) ; adt:units = "m" ;
+data: lat = 40, 41, 42 ; lon = 5, 6, 7 ; adt = 0, 0.1, 0.2, 0, 0.1, 0.2, 0, 0.1, 0.2 ; })");
+  const auto said = info({file}, false);
+  CHECK(said.code == 0);
+  CHECK(said.out.find("variables  adt (m); the current is computed from heights: adt, by name\n") != std::string::npos);
+  CHECK(info({file}).document()["variables"]["recognised_by"] == "computed from heights: adt, by name");
+}
+
 TEST_CASE("field sample gives the current, between times and levels") {
   const test::ScratchFolder folder;
   auto options = at(shelf(folder), 32.5, -16.5, "2024-05-01T00:30:00Z");

@@ -10,13 +10,9 @@ namespace glidehelm::daemon {
 
 namespace {
 
-constexpr Seconds kSettle{10};         // how long a published file must have been left alone
 constexpr Seconds kTryAgain{600};      // after a reason that passes
 constexpr double kLookAgain_s = 3600;  // at an address
 constexpr double kExpired_s = 72 * 3600.0, kFuture_s = 24 * 3600.0;
-
-/// A child cannot wait on a clock that stands still: in a simulated world files are complete when they are there.
-Seconds settle_of(const world::Clock& clock) { return clock.simulated() ? Seconds{0} : kSettle; }
 
 /// Whether `a` is a later forecast than `b`: by reference time when both name one, else by its end.
 bool later(const OceanSource& a, const OceanSource& b) {
@@ -28,11 +24,14 @@ bool later(const OceanSource& a, const OceanSource& b) {
 
 }  // namespace
 
-ForecastWatch::ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache)
+ForecastWatch::ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache,
+                             Seconds settle)
     : world_{world},
       grids_{std::move(grids)},
       handlers_{std::move(handlers)},
       cache_{std::move(cache)},
+      // A child cannot wait on a clock that stands still: in a simulated world files are complete when they are there.
+      settle_{world.clock.simulated() ? Seconds{0} : settle},
       alive_{std::make_shared<bool>(true)} {}
 
 ForecastWatch::~ForecastWatch() { *alive_ = false; }
@@ -85,8 +84,13 @@ void ForecastWatch::look() {
 }
 
 OceanOrder ForecastWatch::order() const {
-  return {*mission_,       grids_, !mission_->coast_file.empty(), mission_->start_time.value_or(world_.clock.utc()),
-          mission_->start, cache_, settle_of(world_.clock)};
+  return {*mission_,
+          grids_,
+          !mission_->coast_file.empty(),
+          mission_->start_time.value_or(world_.clock.utc()),
+          mission_->start,
+          cache_,
+          settle_};
 }
 
 void ForecastWatch::load(std::string seen) {

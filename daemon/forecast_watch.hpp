@@ -25,8 +25,11 @@ class ForecastWatch {
     std::function<void(const std::string& note)> noted{};     ///< a warning
     std::function<void()> settled{};                          ///< a load has ended, in whatever way
   };
+  /// How long a published file must have been left alone, but on a simulated clock.
+  static constexpr Seconds kSettle{10};
   /// `grids`: the folder of the cache; `cache`: shared by all watches of a daemon; none: opened here.
-  ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache = nullptr);
+  ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache = nullptr,
+                Seconds settle = kSettle);
   ~ForecastWatch();
 
   /// From now on these currents; loads them.
@@ -55,6 +58,7 @@ class ForecastWatch {
   std::string grids_;
   Handlers handlers_;
   std::shared_ptr<GridCache> cache_;
+  Seconds settle_;
   std::optional<mission::Mission> mission_;
   std::shared_ptr<const OceanSource> current_;
   std::string seen_, problem_, said_;

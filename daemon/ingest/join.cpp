@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/utc.hpp"
+
 namespace glidehelm::ingest {
 
 namespace {
@@ -85,6 +87,32 @@ std::vector<Chosen> choose_times(const std::vector<Part>& parts) {
   return chosen;
 }
 
+/// Beyond rounding by any packing: two files of one run cannot differ so.
+constexpr double kContradiction = 0.05;  // m/s
+
+/// Where two parts of one named run say something else about the same time; empty when they agree.
+std::string contradiction(const Part& a, const Part& b) {
+  const auto &x = a.grid, &y = b.grid;
+  if (x.facts.reference_s != y.facts.reference_s) return {};  // also when one is not named
+  const std::size_t plane = x.values.size() / x.axes.times_s.size();
+  for (std::size_t k = 0; k < y.axes.times_s.size(); ++k) {
+    const double time = y.axes.times_s[k];
+    const auto same = std::lower_bound(x.axes.times_s.begin(), x.axes.times_s.end(), time);
+    if (same == x.axes.times_s.end() || *same != time) continue;
+    const float* mine = x.values.data() + plane * static_cast<std::size_t>(same - x.axes.times_s.begin());
+    const float* other = y.values.data() + plane * k;
+    double worst = 0;
+    for (std::size_t i = 0; i < plane; ++i)
+      worst = std::max(worst, std::abs(static_cast<double>(mine[i]) - static_cast<double>(other[i])));  // false for NaN
+    if (worst > kContradiction) {
+      char how[160];
+      std::snprintf(how, sizeof how, ": they are of one model run and differ by up to %.2f m/s at ", worst);
+      return a.file + " and " + b.file + " contradict each other" + how + utc_text(instant_at(time));
+    }
+  }
+  return {};
+}
+
 /// Every warning once, with the file it came from, or how many files said the same.
 std::vector<std::string> gathered_warnings(const std::vector<Part>& parts) {
   std::vector<std::pair<std::string, std::vector<std::size_t>>> by_text;
@@ -110,6 +138,10 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
   }
   for (std::size_t p = 1; p < parts.size(); ++p)
     if (auto same = same_grid(parts[0], parts[p]); !same) return fault(parts[p].file + ": " + same.error().what);
+
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    for (std::size_t q = p + 1; q < parts.size(); ++q)
+      if (auto what = contradiction(parts[p], parts[q]); !what.empty()) return fault(std::move(what));
 
   const auto chosen = choose_times(parts);
   const auto& newest = parts[newest_first(parts).front()].grid;

@@ -13,7 +13,7 @@ namespace glidehelm::ingest {
 /// to last, of every newer part, so that no interval is interpolated between two runs of a model. Newer is: the later
 /// forecast reference time, if every part names one; else, and among equal ones, the later first time, else the later
 /// argument. Parts of one cycle (equal named reference times) are merged time by time; of equal times the newer part's
-/// counts.
+/// counts, and a difference of more than 0.05 m/s between them is a contradiction that is refused.
 Result<ocean::Grid> join(std::vector<Part> parts);
 
 }  // namespace glidehelm::ingest

@@ -334,8 +334,9 @@ TEST_CASE("a file must have been left alone for ten seconds, but a simulated clo
   REQUIRE(settle != asked.end());
   CHECK(*(settle + 1) == "10");
   post.world.clock.be_simulated();
+  post.start();
   post.shelf.publish("b.nc", post.run(0.5, 1));
-  post.look();
+  post.follow();
   const auto& then = post.world.procs.requests.back().arguments;
   CHECK(std::find(then.begin(), then.end(), "--settle") == then.end());
 }

@@ -56,7 +56,18 @@ TEST_CASE("without reference times the later first time is newer, then the later
 }
 
 TEST_CASE("files of one cycle interleave, and equal times go to the later argument") {
-  CHECK(story(join({part("a", {0, 6, 12}, 0.1, 0), part("b", {0, 3, 9}, 0.2, 0)})) == "0:2 3:2 6:1 9:2 12:1");
+  // 0.02 m/s apart, as rounding may be; story() rounds 0.14 down and 0.16 up.
+  CHECK(story(join({part("a", {0, 6, 12}, 0.14, 0), part("b", {0, 3, 9}, 0.16, 0)})) == "0:2 3:2 6:1 9:2 12:1");
+}
+
+TEST_CASE("files of one named cycle that say another current for the same time contradict each other") {
+  const auto grid = join({part("a", {0, 6, 12}, 0.1, 0), part("b", {3, 6}, 0.2, 0)});
+  REQUIRE_FALSE(grid);
+  CHECK(
+      grid.error().what ==
+      "a and b contradict each other: they are of one model run and differ by up to 0.10 m/s at 1970-01-01T06:00:00Z");
+  CHECK(join({part("a", {0, 6, 12}, 0.1, 0), part("b", {3, 9}, 0.2, 0)}));  // no time in common
+  CHECK(join({part("a", {0, 6, 12}, 0.1, 0), part("b", {3, 6}, 0.2, 1)}));  // two runs may disagree
 }
 
 TEST_CASE("the facts are those of the newest, the sources those of all in order of the arguments") {

@@ -17,14 +17,25 @@ namespace {
 /// The forecast as a request wants it: corrected by what the glider measured, where that is known.
 class PlanningOcean {
  public:
-  PlanningOcean(const OceanSource& source, const mission::PlanningRequest& request) : ocean_{source.forecast.ocean()} {
-    if (request.correction && request.correction->plausible()) corrected_.emplace(ocean_, *request.correction);
+  PlanningOcean(const OceanSource& source, const mission::PlanningRequest& request)
+      : ocean_{source.forecast.ocean()}, full_{source.forecast.full()}, deep_{source.forecast.facts().levels > 1} {
+    if (!request.correction || !request.correction->plausible()) return;
+    corrected_.emplace(ocean_, *request.correction);
+    corrected_full_.emplace(full_, *request.correction);
   }
   [[nodiscard]] ocean::Ocean ocean() const { return corrected_ ? corrected_->ocean() : ocean_; }
+  /// With its depths; none for a forecast that has none.
+  [[nodiscard]] std::optional<ocean::FieldRef> full() const {
+    if (!deep_) return std::nullopt;
+    return corrected_full_ ? ocean::FieldRef{*corrected_full_} : full_;
+  }
 
  private:
   ocean::Ocean ocean_;
+  ocean::FieldRef full_;
+  bool deep_;
   std::optional<ocean::CorrectedOcean> corrected_;
+  std::optional<ocean::CorrectedField> corrected_full_;
 };
 
 safety::Promise promise_of(const model::WaypointList& list, const vehicle::FlownList& flown,
@@ -45,7 +56,8 @@ mission::Candidate with_list(planning::Plan plan, const model::WaypointList& lis
                              const mission::PlanningRequest& request, const planning::Problem& problem,
                              const OceanSource& ocean, const chart::Chart& chart) {
   const PlanningOcean waters_ocean{ocean, request};
-  const vehicle::Waters waters{waters_ocean.ocean(), chart, problem.coast_margin};
+  // What is promised is what the verifier re-flies: with the depths.
+  const vehicle::Waters waters{waters_ocean.ocean(), chart, problem.coast_margin, waters_ocean.full()};
   mission::Candidate candidate;
   candidate.request = request.id;
   candidate.plan = std::move(plan);

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vehicle/yo.hpp"
+
 namespace glidehelm::vehicle {
 
 namespace {
 
 constexpr double kStep = 120.0;       // seconds
+constexpr double kYoStep = 60.0;      // seconds: 9 m of depth for a usual glider
 constexpr double kNoMoreTime = 1e-6;  // seconds
 constexpr double kIntoRing = 0.01;    // seconds past a ring's crossing
 constexpr double kNear = 50'000.0;    // metres: where a plane is good enough for a bearing
@@ -48,7 +51,10 @@ class Dive {
 
   DiveFlown fly(double seconds, std::span<const GeoPoint> points, std::size_t& target, bool loops) {
     DiveFlown flown;
-    const double begin = here_.t_s, until = begin + seconds, u_hat = flight_.glider.believed_speed.si();
+    begin_ = here_.t_s;
+    seconds_ = seconds;
+    const double until = begin_ + seconds, u_hat = flight_.glider.believed_speed.si();
+    const double longest = waters_.full ? kYoStep : kStep;
     bool first = true;
     while (until - here_.t_s > kNoMoreTime) {
       const Vector aim = next_aim(points, target, loops);
@@ -58,12 +64,12 @@ class Dive {
       first = false;
       const Vector reckoned{u_hat * std::sin(heading) + believed_.east.si(),
                             u_hat * std::cos(heading) + believed_.north.si()};
-      const double dt = std::min({kStep, until - here_.t_s, until_ring(aim, reckoned)});
+      const double dt = std::min({longest, until - here_.t_s, until_ring(aim, reckoned)});
       if (!step(truly, dt)) break;
       reckon(reckoned, dt);
     }
     motion_.end = here_;
-    const double time = here_.t_s - begin;
+    const double time = here_.t_s - begin_;
     if (time > 0) motion_.mean = {MetresPerSecond{east_ / time}, MetresPerSecond{north_ / time}};
     flown.motion = motion_;
     return flown;
@@ -105,16 +111,21 @@ class Dive {
     return false;
   }
 
+  [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> current_at(GeoPoint p, double t_s) const {
+    if (!waters_.full) return waters_.ocean.dive.sample(p, t_s);
+    return current_above_bottom(*waters_.full, p, yo_depth(flight_.glider, t_s - begin_, seconds_), t_s);
+  }
+
   /// One midpoint step of the true position. False when it is lost; the position then stays where the step began.
   bool step(double heading, double dt) {
     const double u = flight_.glider.horizontal_speed.si();
     const Vector through{u * std::sin(heading), u * std::cos(heading)};
-    const auto c0 = waters_.ocean.dive.sample(here_.at(), here_.t_s);
+    const auto c0 = current_at(here_.at(), here_.t_s);
     if (!c0) return lose(lost_by(c0.error()));
     const auto m0 = LocalMetric::at(here_.lat);
     const double lat = here_.lat + 0.5 * dt * (through.north + c0->current.north.si()) / m0.meridian_radius;
     const double lon = here_.lon + 0.5 * dt * (through.east + c0->current.east.si()) / m0.parallel_radius;
-    const auto c = waters_.ocean.dive.sample(GeoPoint::from_kernel(lat, lon), here_.t_s + 0.5 * dt);
+    const auto c = current_at(GeoPoint::from_kernel(lat, lon), here_.t_s + 0.5 * dt);
     if (!c) return lose(lost_by(c.error()));
     const auto m = LocalMetric::at(lat);
     State next{here_.lat + dt * (through.north + c->current.north.si()) / m.meridian_radius,
@@ -144,6 +155,7 @@ class Dive {
   const Flight& flight_;
   const Waters& waters_;
   State here_;
+  double begin_{}, seconds_{};  ///< of this dive
   double reckoned_lat_, reckoned_lon_;
   double radius_;
   Current believed_;

@@ -25,6 +25,9 @@ double steered_heading(double bearing, Current believed, MetresPerSecond believe
 /// `radius` the next point is the target (the first one after the last if `loops`; else, and with a single point, the
 /// glider keeps steering to the one it has). A step that would come into the ring ends a hundredth of a second inside.
 ///
+/// With `waters.full` the true current is that at the depth of the yo-yo, in steps of a minute, which are 9 m of a usual
+/// glider's depth; else `waters.ocean.dive`.
+///
 /// Steps of at most 2 min by the midpoint rule: with a current that changes by 3e-5 1/s along the way (1 m/s over 30 km)
 /// the error of the rule is (2 min · 3e-5)²/6 = 2e-6 of the way, centimetres per stint. The bearing is that of the
 /// geodesic to 1e-4 rad; it is the geodesic's own beyond 50 km.

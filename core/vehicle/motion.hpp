@@ -33,6 +33,8 @@ struct Waters {
   ocean::Ocean ocean;
   const chart::Chart& chart;
   Metres margin;  ///< clearance that the track keeps; a start inside it may only move outwards
+  /// The currents with their depths: a dive by the law is then flown along its yo-yo (yo.hpp). None: in `ocean.dive`.
+  std::optional<ocean::FieldRef> full{};
 };
 
 /// A disc to arrive in.

@@ -81,9 +81,10 @@ bool in_sight(GeoPoint a, GeoPoint b, const Waters& waters) {
 }
 
 /// The longest leg that is written, metres: product.md 7.1 allows 1.1·(Û + largest believed current)·t_s, and what is
-/// written is rounded.
-double longest_leg(const Flight& flight, double fastest_current, double seconds) {
-  return 1.09 * (flight.glider.believed_speed.si() + fastest_current) * seconds;
+/// written is rounded. Later legs keep a tenth below it: the list alone, flown in all depths, meets other currents there
+/// than the plan foresees.
+double longest_leg(const Flight& flight, double fastest_current, double seconds, bool first) {
+  return (first ? 1.09 : 1.0) * (flight.glider.believed_speed.si() + fastest_current) * seconds;
 }
 
 /// True when an aim may follow another one in a list: no farther than a stint flies, and not in its ring. Where the
@@ -178,9 +179,17 @@ Steered hold_until_goal(const Flight& flight, const Waters& waters, const State&
   Steered s;
   // The goal is a point of this list: its ring must lie well inside the disc, or the glider turns before it is there.
   s.radius = std::min(list_radius({leg}, 0, {}), Metres{std::max(kSmallestGoalRing, 0.5 * flight.goal.radius.si())});
-  const auto aim = aim_point(from.at(), wanted, flight.glider, believed, held, s.radius, lead.drifted, lead.unmeasured);
+  const auto aim_within = [&](Metres radius) {
+    return aim_point(from.at(), wanted, flight.glider, believed, held, radius, lead.drifted, lead.unmeasured);
+  };
+  auto aim = aim_within(s.radius);
+  // A ring that holds the goal would be hit together with it.
+  while (stands_for(flight.goal.centre, aim.at, s.radius) && s.radius.si() > kSmallestGoalRing) {
+    s.radius = Metres{std::max(kSmallestGoalRing, std::floor(0.5 * s.radius.si()))};
+    aim = aim_within(s.radius);
+  }
   s.points = {aim.at};
-  if (!aim.ends_list) s.points.push_back(flight.goal.centre);
+  if (!aim.ends_list && !stands_for(flight.goal.centre, aim.at, s.radius)) s.points.push_back(flight.goal.centre);
   s.flown = fly_points(flight, waters, from, seconds, s, believed);
   return s;
 }
@@ -254,7 +263,9 @@ std::optional<model::WaypointList> arriving_list(const Stint& stint, const Fligh
   list.radius = options.radius.value_or(steered->radius);
   for (const auto& p : steered->points) list.points.push_back({p, model::WaypointRole::aim});
   if (list.points.back().at == flight.goal.centre) list.points.back().role = model::WaypointRole::goal;
-  if (list.points.size() > static_cast<std::size_t>(std::max(1, options.max_waypoints)))
+  const bool says_it_twice =
+      list.points.size() > 1 && stands_for(flight.goal.centre, list.points.front().at, list.radius);
+  if (says_it_twice || list.points.size() > static_cast<std::size_t>(std::max(1, options.max_waypoints)))
     list.points.erase(list.points.begin());
   return list;
 }
@@ -282,7 +293,7 @@ class ListMaker {
     if (!open) return list_;
     if (!corrects_ && list_.points.size() + 1 < most_) {
       fastest_ = std::max(fastest_, stints_[0].dac.speed().si());
-      const double longest = longest_leg(flight_, fastest_, flight_.schedule.stint.count());
+      const double longest = longest_leg(flight_, fastest_, flight_.schedule.stint.count(), false);
       for (const auto& p : way_points(list_.points.back().at, stints_.subspan(1), flight_.goal.centre, waters_,
                                       most_ - list_.points.size() - 1, longest))
         list_.points.push_back({p, WaypointRole::aim});
@@ -325,7 +336,7 @@ class ListMaker {
       const Seconds surface = k == 0 ? flight_.schedule.time_to_dive : flight_.schedule.surface;
       const double drift = surface.count() > 0 ? drifted(k).si() / surface.count() : 0.0;
       fastest_ = std::max({fastest_, believed(k).speed().si(), drift});
-      const double longest = longest_leg(flight_, fastest_, stints_[k].surface_s - stints_[k].dive_s);
+      const double longest = longest_leg(flight_, fastest_, stints_[k].surface_s - stints_[k].dive_s, k == 0);
       if (k == 0 && !options_.radius) {
         const double too_long = distance(flight_.fix, aim_of(0, list_.radius).at).si() - longest;
         if (too_long > 0) list_.radius = Metres{std::max(kSmallestRadius, std::floor(list_.radius.si() - too_long))};
@@ -524,7 +535,7 @@ class Relay {
       const auto later = foreseen_.subspan(std::min(foreseen_.size(), static_cast<std::size_t>(k) + 1));
       const double fastest = std::max(ideal.mean.speed().si(), drift_speed_);
       const auto ground = way_points(first, later, flight_.goal.centre, waters_, 1,
-                                     longest_leg(flight_, fastest, flight_.schedule.stint.count()));
+                                     longest_leg(flight_, fastest, flight_.schedule.stint.count(), false));
       needs_ground_points_ = needs_ground_points_ || !ground.empty() || !in_sight(first, flight_.goal.centre, waters_);
       return ground.empty() ? std::nullopt : std::optional{ground.front()};
     }
@@ -538,7 +549,7 @@ class Relay {
     auto aim = aim_point(dive.end.at(), *next, flight_.glider, ideal.mean, seconds, radius, drifted);
     const double fastest = std::max({believed_in(flight_, last_.mean, k).speed().si(), ideal.mean.speed().si(),
                                      drift_speed_, dive.mean.speed().si()});
-    const double longest = longest_leg(flight_, fastest, seconds);
+    const double longest = longest_leg(flight_, fastest, seconds, false);
     bring_within(longest, first, dive.end.at(), aim);
     return follows(first, aim.at, longest, radius) ? std::optional{aim.at} : std::nullopt;
   }

@@ -74,8 +74,8 @@ struct ListOptions {
 ///  - Correction 1: w_1 … w_7, then the goal. Correction 0: w_1, then only as many points of the way as the straight way
 ///    to the goal needs around land and areas (from each the farthest predicted surfacing in sight and reach), then the goal: an aim
 ///    point that is not hit in time would turn the next dive back. Never more than `max_waypoints`.
-///  - No leg is longer than 1.09·(Û + largest current believed or drifted in so far)·t_s, so that the written file keeps product.md
-///    7.1, and no aim point lies inside the ring of the one before: an aim point too far from the one before is
+///  - No leg is longer than 1.09·(Û + largest current believed or drifted in so far)·t_s, those after the first than 1.00 of
+///    it, so that the written file keeps product.md 7.1, and no aim point lies inside the ring of the one before: an aim point too far from the one before is
 ///    brought nearer to its own dive point; where even that does not do, the goal follows at once. When fix → w_1 would be too long the radius gives way, down to 100 m.
 ///  - A point whose ring would hold the goal is left out: the goal says the same.
 ///  - It ends with the first aim that ends it (`Aim::ends_list`).
@@ -83,7 +83,8 @@ struct ListOptions {
 ///    water with data (flown by `fly_list`): a list that goes round and round over its own points is safe for a lost call, a last
 ///    leg across land is not. When nothing helps the list is as above, for the verifier to refuse.
 ///  - When the first stint arrives: the goal alone if steering at it is how the stint was predicted, else the heading
-///    that arrives, held until it does, and then the goal, with a radius of at most half the goal's.
+///    that arrives, held until it does, and then the goal, with a radius of at most half the goal's, and so small that the
+///    goal lies outside the ring before it.
 ///  - Without stints: the goal alone.
 ///
 /// One radius for all points, in whole metres: 10 % of the median leg, at least 100 m and twice the largest predicted

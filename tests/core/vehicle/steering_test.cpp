@@ -273,6 +273,25 @@ TEST_CASE("the list of an arriving stint arrives when the plan says") {
   CHECK(*alone.arrival_s == Approx(*flown.arrival_s).margin(1e-3));
 }
 
+TEST_CASE("the goal never lies in the ring of the aim that is held until the arrival") {
+  // Headings that pass the goal at some distance, with a goal whose disc is wide enough to be entered on the way.
+  const test::Uniform across{0.2, 0};
+  int held = 0;
+  for (const double away : {1500.0, 2500.0, 3500.0, 5000.0})
+    for (const double off : {0.0, 10.0, 20.0, 30.0, 40.0}) {
+      Setting s{across, across, 0};
+      s.flight.goal = {destination(s.flight.fix, Bearing{degrees(0)}, Metres{away}), Metres{1400}};
+      const std::vector<Heading> wanted{Heading{degrees(off - 60)}};
+      const auto flown = fly_headings(wanted, s.flight, s.waters);
+      if (flown.stints.size() != 1) continue;
+      const auto list = list_for(flown.stints, s.flight, s.waters, {});
+      if (list.points.size() < 2) continue;
+      ++held;
+      CHECK(distance(list.points[0].at, list.points[1].at) > list.radius);
+    }
+  CHECK(held >= 4);
+}
+
 TEST_CASE("a plan's next surfacing is that of its list flown by the verifier") {
   const auto seas = test::analytic_seas();
   for (const int correction : {0, 1})

@@ -124,7 +124,7 @@ std::uint32_t crc_with_field_zero(std::span<const std::byte> header) {
 
 void read_facts(Cursor& cursor, GridFacts& facts) {
   for (std::string* text : {&facts.cycle, &facts.east_variable, &facts.north_variable, &facts.east_unit,
-                            &facts.north_unit, &facts.recognised_by, &facts.time_unit})
+                            &facts.north_unit, &facts.recognised_by, &facts.time_unit, &facts.layout})
     *text = cursor.text();
   const auto sources = cursor.take<std::uint32_t>();
   for (std::uint32_t i = 0; i < sources && !cursor.failed(); ++i) {
@@ -168,7 +168,7 @@ std::optional<GridError> fault_of_runs(const std::vector<NodeRun>& runs, const f
 
 void put_facts(std::string& out, const GridFacts& facts) {
   for (const std::string* text : {&facts.cycle, &facts.east_variable, &facts.north_variable, &facts.east_unit,
-                                  &facts.north_unit, &facts.recognised_by, &facts.time_unit})
+                                  &facts.north_unit, &facts.recognised_by, &facts.time_unit, &facts.layout})
     put_text(out, *text);
   put(out, static_cast<std::uint32_t>(facts.sources.size()));
   for (const auto& source : facts.sources) {

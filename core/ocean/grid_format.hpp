@@ -16,7 +16,7 @@
 ///
 ///     offset  size  field
 ///          0     8  magic "GLHGRID1"
-///          8     4  version (3)
+///          8     4  version (4)
 ///         12     4  bytes of the whole header (a multiple of 64): the payload begins there
 ///         16     4  CRC-32C of the header, computed with this field zero
 ///         20     4  CRC-32C of the payload
@@ -36,7 +36,7 @@
 namespace glidehelm::ocean {
 
 /// Version of the layout; another version is another file.
-inline constexpr std::uint32_t kGridVersion = 3;
+inline constexpr std::uint32_t kGridVersion = 4;
 
 /// One file that went into a grid.
 struct GridSource {
@@ -53,6 +53,7 @@ struct GridFacts {
   std::string east_unit, north_unit;  ///< as the file writes them; empty when it has none
   std::string recognised_by;          ///< why these variables: "standard_name …", "name …", "asked for"
   std::string time_unit;              ///< as the file writes it
+  std::string layout;                 ///< how the file's own grid was brought onto this one; empty: it is this one
   std::vector<GridSource> sources;    ///< in the order of the arguments
   std::vector<std::string> warnings;
 };

@@ -11,10 +11,13 @@ namespace glidehelm::ingest {
 struct Fault {
   std::string what;
   bool library{};  ///< the library could not read: of a remote address, perhaps not now
+  bool
+      alone{};  ///< it says nothing about the file by itself: others beside it (a grid, the other component) would help
   friend bool operator==(const Fault&, const Fault&) = default;
 };
 template <class T>
 using Result = Expected<T, Fault>;
 inline Unexpected<Fault> fault(std::string what) { return unexpected(Fault{std::move(what)}); }
+inline Unexpected<Fault> fault_alone(std::string what) { return unexpected(Fault{std::move(what), false, true}); }
 
 }  // namespace glidehelm::ingest

@@ -9,6 +9,7 @@
 #include "core/base/utc.hpp"
 #include "daemon/ingest/join.hpp"
 #include "daemon/ingest/opendap.hpp"
+#include "daemon/ingest/read_files.hpp"
 #include "daemon/ingest/sandbox.hpp"
 #include "daemon/ingest/sources.hpp"
 #include "daemon/world/real_files.hpp"
@@ -31,8 +32,8 @@ constexpr std::uint64_t kFileAtMost = 4'000'000'000, kKeptAtMost = std::uint64_t
 constexpr std::size_t kRefusedListAtMost = std::size_t{4} << 20;
 
 struct Arguments {
-  std::vector<std::string> files;
-  std::string output, variables, epoch, area, heights, equator_band, fill_gaps;
+  std::vector<std::string> files, grid_files;
+  std::string output, variables, epoch, area, heights, equator_band, fill_gaps, rotation, s_levels;
   double settle_s{};
   bool refused_before{}, tell{};
 };
@@ -70,6 +71,24 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
+/// How a model's own grid is read; a message when one of them cannot be read.
+std::optional<std::string> read_model_options(const Arguments& arguments, ReadOptions& options) {
+  const std::string& word = arguments.rotation;
+  if (word == "angle")
+    options.turning = Turning::angle;
+  else if (word == "grid")
+    options.turning = Turning::grid;
+  else if (word == "none")
+    options.turning = Turning::none;
+  else if (!word.empty())
+    return "--rotation " + word + ": allowed is angle, grid or none";
+  if (arguments.s_levels.empty()) return std::nullopt;
+  const auto choice = stretching_choice_from(arguments.s_levels);
+  if (!choice) return "--s-levels: " + choice.error().what;
+  options.stretching = *choice;
+  return std::nullopt;
+}
+
 /// The options in their types; a message when one of them cannot be read.
 std::optional<std::string> read_options(const Arguments& arguments, ReadOptions& options) {
   if (!arguments.variables.empty()) {
@@ -101,6 +120,7 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
     if (!km || *km < 0 || *km > 500) return "--fill-gaps " + arguments.fill_gaps + ": allowed is 0 to 500 km";
     options.fill_gaps_m = *km * 1000;
   }
+  if (auto wrong = read_model_options(arguments, options)) return wrong;
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
   for (const auto& part : split(arguments.area, '/'))
@@ -175,32 +195,43 @@ int look_up(const Story& story, const Sources& sources, const std::set<std::stri
 }
 
 /// Files that cannot be opened have no `Sources` to be named by.
-int refuse_to_open(const Story& story, const Arguments& arguments, const SourceFault& fault) {
+int refuse_to_open(const Story& story, const std::vector<std::string>& names, const SourceFault& fault) {
   story.tell("copying " + std::to_string(fault.file));
-  const int code = refuse(arguments.files[fault.file] + ": " + fault.what);
+  const int code = refuse(names[fault.file] + ": " + fault.what);
   return fault.passing ? kNotNow : code;
 }
 
-Expected<std::vector<Part>, int> read_parts(const Story& story, Sources& sources, const Units& units,
-                                            const ReadOptions& options) {
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    story.tell("reading " + std::to_string(i));
-    if (sources.is_elsewhere(i)) {
-      auto part = read_address(sources.name(i), units, options);
-      if (!part) return unexpected(refuse(sources, {i, part.error().what, part.error().passing}));
-      sources.identify(i, part->grid.facts.sources.front().hash);
-      tell_source(story, sources, i);
-      parts.push_back(std::move(*part));
-      continue;
+Expected<std::vector<Part>, int> read_parts(const Story& story, Sources& sources, std::size_t grid_files,
+                                            const Units& units, const ReadOptions& options) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < sources.size(); ++i) names.push_back(sources.name(i));
+  std::optional<SourceFault> not_had;
+  FileAccess access;
+  access.tell = [&](std::size_t i) { story.tell("reading " + std::to_string(i)); };
+  access.load = [&](std::size_t i) -> Result<std::string> {
+    auto bytes = sources.take(i);
+    if (bytes) return std::move(*bytes);
+    not_had = bytes.error();
+    return fault(bytes.error().what);
+  };
+  access.read_address = [&](std::size_t i) -> Result<Part> {
+    auto part = read_address(sources.name(i), units, options);
+    if (!part) {
+      not_had = SourceFault{i, part.error().what, part.error().passing};
+      return fault(part.error().what);
     }
-    const auto bytes = sources.take(i);
-    if (!bytes) return unexpected(refuse(sources, bytes.error()));
-    auto part = read_part(sources.name(i), std::as_bytes(std::span{bytes->data(), bytes->size()}), units, options);
-    if (!part) return unexpected(refuse(sources.name(i) + ": " + part.error().what));
-    parts.push_back(std::move(*part));
-  }
-  return parts;
+    sources.identify(i, part->grid.facts.sources.front().hash);
+    tell_source(story, sources, i);
+    return std::move(*part);
+  };
+  auto parts = read_files(names, grid_files, access, units, options);
+  if (parts) return std::move(*parts);
+  if (not_had) return unexpected(refuse(sources, *not_had));
+  // A fault of the set is none of the file that was read last; of a set of one, nothing may be remembered: tomorrow the
+  // file that it lacks may lie beside it.
+  if (parts.error().alone) story.tell("joining");
+  const int code = refuse(parts.error().what);
+  return unexpected(parts.error().alone && names.size() == 1 ? kNotNow : code);
 }
 
 int run(const Arguments& arguments) {
@@ -212,9 +243,11 @@ int run(const Arguments& arguments) {
   const auto units = Units::load();
   if (!units) return refuse(units.error().what);
   const auto known = arguments.refused_before ? refused_before(files) : std::set<std::string>{};
-  auto sources = Sources::open(arguments.files, kFileAtMost, is_address);
-  if (!sources) return refuse_to_open(story, arguments, sources.error());
-  const bool network = std::any_of(arguments.files.begin(), arguments.files.end(), is_address);
+  auto names = arguments.files;
+  names.insert(names.end(), arguments.grid_files.begin(), arguments.grid_files.end());
+  auto sources = Sources::open(names, kFileAtMost, is_address);
+  if (!sources) return refuse_to_open(story, names, sources.error());
+  const bool network = std::any_of(names.begin(), names.end(), is_address);
   if (auto entered = enter_sandbox(folder_of(arguments.output), network); !entered) return refuse(entered.error());
 
   if (auto identified = sources->identify(Seconds{arguments.settle_s}, kKeptAtMost); !identified) {
@@ -224,13 +257,12 @@ int run(const Arguments& arguments) {
   for (std::size_t i = 0; i < sources->size(); ++i)
     if (!sources->is_elsewhere(i)) tell_source(story, *sources, i);
   if (const int code = look_up(story, *sources, known); code != 0) return code;
-  auto parts = read_parts(story, *sources, *units, options);
+  auto parts = read_parts(story, *sources, arguments.grid_files.size(), *units, options);
   if (!parts) return parts.error();
   story.tell("joining");
-  auto whole = pair_halves(std::move(*parts));
-  if (!whole) return refuse(whole.error().what);
-  const auto grid = join(std::move(*whole));
+  auto grid = join(std::move(*parts));
   if (!grid) return refuse(grid.error().what);
+  grid->facts.sources = sources->identities();  // in the order of the arguments, a model's grid with them
   for (const auto& warning : grid->facts.warnings) std::cerr << "glidehelm-ingest: warning: " << warning << '\n';
   story.tell("writing");
   const std::string bytes = ocean::write_grid(*grid);
@@ -265,6 +297,13 @@ int main(int argc, char** argv) {
                "say on standard output what is being done, for the program that started this one");
   app.add_option("--fill-gaps", arguments.fill_gaps,
                  "km within which gaps of surface currents are filled (default: two cells of HF radar files)");
+  app.add_option("--grid-file", arguments.grid_files,
+                 "a model's grid: positions, masks, angle, depth (found among the files too)")
+      ->expected(1);
+  app.add_option("--rotation", arguments.rotation,
+                 "velocities along a model's axes, turned by its angle or by its grid; or none: east and north");
+  app.add_option("--s-levels", arguments.s_levels,
+                 "s-levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);

@@ -149,7 +149,9 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
   grid.facts.warnings = gathered_warnings(parts);
   grid.facts.sources.clear();
   for (const auto& part : parts)
-    grid.facts.sources.insert(grid.facts.sources.end(), part.grid.facts.sources.begin(), part.grid.facts.sources.end());
+    for (const auto& source : part.grid.facts.sources)  // a grid file belongs to many parts, and is named once
+      if (std::find(grid.facts.sources.begin(), grid.facts.sources.end(), source) == grid.facts.sources.end())
+        grid.facts.sources.push_back(source);
   grid.axes.times_s.clear();
   const std::size_t plane = 2 * grid.axes.depths_m.size() * grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
   grid.values.reserve(plane * chosen.size());

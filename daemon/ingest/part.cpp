@@ -12,6 +12,7 @@
 #include "daemon/ingest/component.hpp"
 #include "daemon/ingest/gap_fill.hpp"
 #include "daemon/ingest/geostrophic.hpp"
+#include "daemon/ingest/model_part.hpp"
 #include "daemon/ingest/plausible.hpp"
 #include "daemon/ingest/quality.hpp"
 #include "daemon/ingest/whole_file.hpp"
@@ -46,6 +47,7 @@ struct Reading {
   const Units& units;
   const ReadOptions& options;
   Part& part;
+  const std::vector<GridFile>& grids;
   std::vector<std::string> outside;  ///< "uo 12 (-5 to 5)": values beyond the valid range
 
   std::vector<std::string>& warnings() const { return part.grid.facts.warnings; }
@@ -76,15 +78,18 @@ Result<Done> read_into(Reading& reading, const Variable& variable, const std::st
   return Done{};
 }
 
-void tell_times(Reading& reading, const Axes& axes, const std::string& name) {
+void tell_cycle(Reading& reading, const std::string& name) {
   auto& facts = reading.part.grid.facts;
-  if (axes.time) facts.time_unit = axes.time->coordinate->unit().value_or("");
   facts.reference_s = reference_time(reading.file, reading.units);
   facts.cycle = base_name(name);
   if (!std::isnan(facts.reference_s))
     facts.cycle += ", cycle " + utc_text(instant_at(facts.reference_s));
   else if (reading.part.grid.axes.has_time)
     facts.cycle += ", from " + utc_text(instant_at(reading.part.grid.axes.times_s.front()));
+}
+void tell_times(Reading& reading, const Axes& axes, const std::string& name) {
+  if (axes.time) reading.part.grid.facts.time_unit = axes.time->coordinate->unit().value_or("");
+  tell_cycle(reading, name);
 }
 
 Result<Done> finish(const Reading& reading) {
@@ -136,6 +141,9 @@ Result<Done> read_currents(Reading& reading, const VelocityPair& pair, const std
 
 Result<Done> read_half(Reading& reading, const LoneComponent& lone, const std::string& name) {
   const auto axes = recognise_axes(reading.file, *lone.variable);
+  if (!axes && has_plane_positions(ModelFiles{{&reading.file}}))
+    return fault_alone("it has " + reading.file.shape_of(*lone.variable) +
+                       " only, along an axis of a model's own grid; give the file of the other component beside it");
   if (!axes) return unexpected(axes.error());
   const auto box = prepare(reading, *axes);
   if (!box) return unexpected(box.error());
@@ -198,6 +206,17 @@ Result<Done> read_heights(Reading& reading, const SeaHeights& heights, const std
   return Done{};
 }
 
+/// True when it is a model on a grid of its own, which then is read.
+Result<bool> read_as_model(Reading& reading, const std::vector<const NetcdfFile*>& files, const std::string& name) {
+  auto model = read_model(ModelFiles{files}, reading.units, reading.options);
+  if (!model) return unexpected(model.error());
+  if (!*model) return false;
+  reading.part.grid = std::move(**model);
+  if (auto finished = finish(reading); !finished) return unexpected(finished.error());
+  tell_cycle(reading, name);
+  return true;
+}
+
 /// What of a file is read, and how.
 Result<Done> read_somehow(Reading& reading, const std::string& name) {
   using Heights = ReadOptions::Heights;
@@ -210,7 +229,16 @@ Result<Done> read_somehow(Reading& reading, const std::string& name) {
     return read_heights(reading, **heights, name);
   }
   const auto pair = recognise_velocity(reading.file, options.east, options.north);
-  if (pair) return read_currents(reading, *pair, name);
+  if (pair && recognise_axes(reading.file, *pair->east)) return read_currents(reading, *pair, name);
+  std::vector<const NetcdfFile*> files{&reading.file};
+  for (const auto& grid : reading.grids) files.push_back(grid.file);
+  const auto model = read_as_model(reading, files, name);
+  if (!model) return unexpected(model.error());
+  if (*model) return Done{};
+  if (pair) return read_currents(reading, *pair, name);  // says which of its axes is not recognised
+  if (const auto grid = described_grid(reading.file))
+    return fault_alone("it describes a model's grid (" + *grid +
+                       ") and has no current; name it beside the files that have");
   if (asked_for) return unexpected(pair.error());
   // A file that has both is refused for what is wrong with them, not read in another way.
   const auto components = velocity_components(reading.file);
@@ -227,20 +255,36 @@ Result<Done> read_somehow(Reading& reading, const std::string& name) {
 }  // namespace
 
 Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, const Sha256& hash, const Units& units,
-                            const ReadOptions& options) {
+                            const ReadOptions& options, const std::vector<GridFile>& grids) {
   Part part{name, {}, Holds::both};
-  Reading reading{file, units, options, part, {}};
+  Reading reading{file, units, options, part, grids, {}};
   if (auto read = read_somehow(reading, name); !read) return unexpected(read.error());
   part.grid.facts.sources = {{name, hash}};
+  if (!part.grid.facts.layout.empty())  // else no grid file had a part in it
+    for (const auto& grid : grids) part.grid.facts.sources.push_back(grid.source);
+  return part;
+}
+
+Result<Part> read_model_pair(const std::string& name, const std::vector<GridFile>& files, const Units& units,
+                             const ReadOptions& options) {
+  Part part{name, {}, Holds::both};
+  const std::vector<GridFile> none;
+  Reading reading{*files.front().file, units, options, part, none, {}};
+  std::vector<const NetcdfFile*> open;
+  for (const auto& file : files) open.push_back(file.file);
+  const auto model = read_as_model(reading, open, name);
+  if (!model) return unexpected(model.error());
+  if (!*model) return fault("it and the file of the other component are no velocity on one grid");
+  for (const auto& file : files) part.grid.facts.sources.push_back(file.source);
   return part;
 }
 
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
-                       const ReadOptions& options) {
+                       const ReadOptions& options, const std::vector<GridFile>& grids) {
   if (auto whole = check_whole(bytes); !whole) return unexpected(whole.error());
   const auto file = NetcdfFile::open(bytes);
   if (!file) return unexpected(file.error());
-  return read_open_file(name, *file, Sha256::of(bytes), units, options);
+  return read_open_file(name, *file, Sha256::of(bytes), units, options, grids);
 }
 
 }  // namespace glidehelm::ingest

@@ -7,9 +7,18 @@
 
 #include "core/ocean/grid_format.hpp"
 #include "daemon/ingest/axis_values.hpp"
+#include "daemon/ingest/vertical.hpp"
 
 /// One file, read.
 namespace glidehelm::ingest {
+
+/// What the components of a model's velocity mean, when the files leave it open.
+enum class Turning {
+  recognised,  ///< by standard_name, names and staggering; refused when these leave it open and the grid is turned
+  angle,       ///< along the grid's axes, turned by the file's angle
+  grid,        ///< along the grid's axes, turned by the directions of the axes
+  none         ///< east and north already
+};
 
 /// What the command line says about reading.
 struct ReadOptions {
@@ -26,6 +35,14 @@ struct ReadOptions {
   std::optional<double> fill_gaps_m;
   double nodes_at_most{2e9};          ///< 16 GB of floats
   std::optional<double> only_time_s;  ///< one of the file's times alone: a second look at what may still change
+  Turning turning{Turning::recognised};
+  std::optional<StretchingChoice> stretching;  ///< of s-levels that the files do not describe
+};
+
+/// An open file that describes the grid of others, with its name and hash.
+struct GridFile {
+  const NetcdfFile* file{};
+  ocean::GridSource source;
 };
 
 /// Which components of the current a part has numbers for.
@@ -42,13 +59,18 @@ struct Part {
 /// place: files that are not whole, variables or axes that are not recognised (recognise.hpp), units that cannot be read,
 /// a field of more than 2e9 nodes, and what no sea can be (plausible.hpp). A file with one component only becomes half a
 /// part; a file without velocity but with heights of the sea surface becomes the geostrophic current, and its facts say
-/// "computed from heights".
+/// "computed from heights". Files that are no rectilinear grid with depths (staggered, curvilinear, terrain-following) are
+/// brought onto one, with the help of `grids` (model_part.hpp).
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
-                       const ReadOptions& options);
+                       const ReadOptions& options, const std::vector<GridFile>& grids = {});
 
 /// The same of a file that is open, with its hash.
 Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, const Sha256& hash, const Units& units,
-                            const ReadOptions& options);
+                            const ReadOptions& options, const std::vector<GridFile>& grids = {});
+
+/// The u of one file and the v of another on a model's own grid, both open; then grid files.
+Result<Part> read_model_pair(const std::string& name, const std::vector<GridFile>& files, const Units& units,
+                             const ReadOptions& options);
 
 /// Makes whole parts of halves: the east of one file and the north of another that lie on the same axes and times. What
 /// was whole stays; a half without its other is refused.

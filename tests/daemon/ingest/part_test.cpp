@@ -66,9 +66,8 @@ TEST_CASE("real data: every other sample is refused for its reason") {
   GLIDEHELM_NEEDS_DATA(data);
   const test::ScratchFolder folder;
   const std::pair<const char*, const char*> refused[] = {
-      {"roms_us_east_sandy/coawst_clm_20121028.nc", "curvilinear grid: lat_rho(erho, xrho)"},
-      {"roms_us_east_sandy/Sandy_roms_grid.nc", "curvilinear grid: lat_rho(eta_rho, xi_rho)"},
-      {"roms_wcofs_oregon/WCOFS_subset.nc", "curvilinear grid: lat_psi(eta_psi, xi_psi)"},
+      {"roms_us_east_sandy/coawst_clm_20121028.nc", "axis v3d_time has the unit \"days\" without an epoch"},
+      {"roms_us_east_sandy/Sandy_roms_grid.nc", "it describes a model's grid (lat_rho, lon_rho) and has no current"},
       {"tides/tide_forc_Sandy.nc",
        "tidal constituents: tide_Cmax(tide_period, erho, xrho) describes the tide by its constituents, not the "
        "current"},

@@ -110,7 +110,7 @@ TEST_CASE("NEMO's u and v in two files are paired by their times, and turned by 
                  "a_grid_U.nc: it has one component of the velocity only, and no file with the other one at the "
                  "same times was given"));
   const auto single = run_ingest(folder, u0);
-  CHECK(single.ran.code == 1);
+  CHECK(single.ran.code == 5);  // by itself: the other file may come
   CHECK(
       contains(single.ran.err, "along an axis of a model's own grid; give the file of the other component beside it"));
 }
@@ -131,16 +131,17 @@ TEST_CASE("a grid file serves wherever it stands in the list, or by its option, 
     CHECK(result.view->axes.times_s.size() == 2);
     CHECK(worst_of(result, 1, 0.3, -0.4) < kEdge);
     CHECK(contains(result.view->facts.layout, "turned by angle"));
-    const auto& sources = result.view->facts.sources;
-    REQUIRE(sources.size() == 3);
-    CHECK(sources[0].name == a);
-    CHECK(sources[1].name == grid);
-    CHECK(sources[2].name == b);
-    if (first.empty()) first = result.bytes;
-    CHECK(result.bytes == first);
+    // As the arguments stand, so that a set is known by its contents; the numbers are the same.
+    std::string names;
+    for (const auto& source : result.view->facts.sources) names += " " + source.name;
+    CHECK(arguments.find(names.substr(1, names.find(' ', 1) - 1)) == 0);
+    CHECK(result.view->facts.sources.size() == 3);
+    const auto numbers = result.bytes.substr(result.bytes.size() - 8 * result.view->axes.nodes());
+    if (first.empty()) first = numbers;
+    CHECK((numbers == first));
   }
   const auto without = run_ingest(folder, a);
-  CHECK(without.ran.code == 1);
+  CHECK(without.ran.code == 5);
   CHECK(contains(without.ran.err, "name the model's grid file among the files or with --grid-file"));
 }
 

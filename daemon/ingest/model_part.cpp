@@ -299,7 +299,11 @@ Result<std::optional<Rotation>> rotation_for(const ModelFiles& files, const Mode
 
 /// True when the plain reader's refusal is not the last word.
 bool is_model(const ModelFiles& files, const ModelVelocity& velocity, const Splitting& u, const Splitting& v) {
-  if (shape_of(velocity.u) != shape_of(velocity.v) || velocity.u.file != velocity.v.file) return true;
+  if (velocity.u.file != velocity.v.file) return true;
+  const auto shape_u = *shape_of(velocity.u), shape_v = *shape_of(velocity.v);
+  // The one along latitude and longitude, the other turned over: a mistake, no staggering.
+  const bool turned_over = own_positions(velocity.u) && shape_v == Shape{shape_u.columns, shape_u.rows};
+  if (shape_u != shape_v) return !turned_over;
   if (u.terrain || v.terrain) return true;
   const auto positions = own_positions(velocity.u);
   if (positions && positions->lat.variable->dimensions.size() > 1) return true;

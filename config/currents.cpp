@@ -266,6 +266,33 @@ const Fields<CurrentsItem>& item_fields() {
                     "gaps of surface currents up to this distance are filled from both sides and count as extrapolated",
                     false, "two cells in files of HF radar, none in others"},
                    &C::fill_gaps, 1000, from_to(0, 500));
+    f.text(
+        {"grid_file",
+         "the grid of a model that is not in its forecasts: positions, masks, angle, depth (found among the files too)",
+         false, "none"},
+        &C::grid_file);
+    using Rotation = mission::Currents::Rotation;
+    f.word({"rotation",
+            "what a model's velocities on a turned grid are, where its files leave it open: along the grid's axes, "
+            "turned by the file's angle or by the directions of the axes, or east and north already"},
+           &C::rotation,
+           std::vector<std::pair<std::string, Rotation>>{{"recognised", Rotation::recognised},
+                                                         {"angle", Rotation::angle},
+                                                         {"grid", Rotation::grid},
+                                                         {"none", Rotation::none}});
+    Fields<C> levels;
+    levels.maybe_whole({"vtransform", "Vtransform of ROMS", false, "as the files say"}, &C::vtransform, from_to(1, 2));
+    levels.maybe_whole({"vstretching", "Vstretching of ROMS", false, "as the files say"}, &C::vstretching,
+                       from_to(1, 5));
+    levels.maybe_number({"theta_s", "stretching at the surface", false, "as the files say"}, &C::theta_s, 1,
+                        from_to(0, 20));
+    levels.maybe_number({"theta_b", "stretching at the sea floor", false, "as the files say"}, &C::theta_b, 1,
+                        from_to(0, 4));
+    levels.maybe_number(
+        {"hc_m", "critical depth hc (with Vtransform 1 the lesser of Tcline and the least depth of the grid)", false,
+         "as the files say"},
+        &C::critical_depth, 1, from_to(0, 10000));
+    f.section({"s_levels", "the stretching of ROMS levels that the files do not describe; all five keys"}, levels);
     f.flag({"local_correction", "what the glider measured less what the forecast said is added to it near the glider"},
            &C::local_correction);
     f.number({"correction_length_km", "L: the correction falls with the distance d as exp(−d²/2L²)"},
@@ -308,6 +335,12 @@ CurrentsItem read_item(const At& at) {
     at.complain("both files and analytic", {}, "a list of maps, one field each, to add fields");
   if (!has_files && !has_analytic) at.complain("no field", {}, "files: [PATTERN, …] or analytic: {…}");
   for (auto& file : item.files) file = path_beside(at.reading.problems.file(), file);
+  item.grid_file = path_beside(at.reading.problems.file(), item.grid_file);
+  const int levels = (item.vtransform ? 1 : 0) + (item.vstretching ? 1 : 0) + (item.theta_s ? 1 : 0) +
+                     (item.theta_b ? 1 : 0) + (item.critical_depth ? 1 : 0);
+  if (levels != 0 && levels != 5)
+    at.reading.complain(at.path + ".s_levels",
+                        "incomplete; allowed is vtransform, vstretching, theta_s, theta_b and hc_m together");
   return item;
 }
 
@@ -346,6 +379,13 @@ void read_currents(const At& at, std::vector<CurrentsItem>& items) {
   share(items, &CurrentsItem::heights, "heights", at);
   share(items, &CurrentsItem::equator_band, "equator_band_deg", at);
   share(items, &CurrentsItem::fill_gaps, "fill_gaps_km", at);
+  share(items, &CurrentsItem::grid_file, "grid_file", at);
+  share(items, &CurrentsItem::rotation, "rotation", at);
+  share(items, &CurrentsItem::vtransform, "s_levels.vtransform", at);
+  share(items, &CurrentsItem::vstretching, "s_levels.vstretching", at);
+  share(items, &CurrentsItem::theta_s, "s_levels.theta_s", at);
+  share(items, &CurrentsItem::theta_b, "s_levels.theta_b", at);
+  share(items, &CurrentsItem::critical_depth, "s_levels.hc_m", at);
   share(items, &CurrentsItem::local_correction, "local_correction", at);
   share(items, &CurrentsItem::correction_length, "correction_length_km", at);
   share(items, &CurrentsItem::correction_time, "correction_time_h", at);
@@ -377,6 +417,10 @@ mission::Currents resolve_currents(const std::vector<CurrentsItem>& items) {
     currents.heights = item.heights;
     currents.equator_band = item.equator_band;
     currents.fill_gaps = item.fill_gaps;
+    currents.grid_file = item.grid_file;
+    currents.rotation = item.rotation;
+    if (item.vtransform && item.vstretching && item.theta_s && item.theta_b && item.critical_depth)
+      currents.s_levels = {*item.vtransform, *item.vstretching, *item.theta_s, *item.theta_b, *item.critical_depth};
     currents.local_correction = item.local_correction;
     currents.correction_length = item.correction_length;
     currents.correction_time = item.correction_time;

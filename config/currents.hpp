@@ -35,6 +35,11 @@ struct CurrentsItem {
   mission::Currents::Heights heights{mission::Currents{}.heights};
   Radians equator_band{mission::Currents{}.equator_band};
   std::optional<Metres> fill_gaps;
+  std::string grid_file;
+  mission::Currents::Rotation rotation{mission::Currents{}.rotation};
+  std::optional<int> vtransform, vstretching;  ///< of s_levels: all five or none
+  std::optional<double> theta_s, theta_b;
+  std::optional<Metres> critical_depth;
   bool local_correction{mission::Currents{}.local_correction};
   Metres correction_length{mission::Currents{}.correction_length};
   Seconds correction_time{mission::Currents{}.correction_time};

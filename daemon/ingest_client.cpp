@@ -65,6 +65,12 @@ std::vector<std::string> reading_arguments(const IngestOptions& options) {
   }
   number_option("--equator-band", options.equator_band_deg);
   number_option("--fill-gaps", options.fill_gaps_km);
+  for (const auto& [name, text] :
+       {std::pair{"--rotation", &options.rotation}, std::pair{"--s-levels", &options.s_levels}}) {
+    if (text->empty()) continue;
+    arguments.emplace_back(name);
+    arguments.push_back(*text);
+  }
   if (options.area) {
     // One word with "=": a western edge begins with a minus sign.
     arguments.push_back("--area=" + decimal(options.area->west_deg) + "/" + decimal(options.area->east_deg) + "/" +
@@ -73,8 +79,9 @@ std::vector<std::string> reading_arguments(const IngestOptions& options) {
   return arguments;
 }
 
+/// The files of the patterns; the grid file last, as the child counts it.
 Expected<std::vector<std::string>, IngestFault> files_of(const std::vector<std::string>& patterns,
-                                                         const world::World& world) {
+                                                         const std::string& grid_file, const world::World& world) {
   std::vector<std::string> files;
   for (const auto& pattern : patterns) {
     if (pattern.find("://") != std::string::npos) {  // not a name of this machine
@@ -86,6 +93,9 @@ Expected<std::vector<std::string>, IngestFault> files_of(const std::vector<std::
     files.insert(files.end(), found.begin(), found.end());
   }
   if (files.empty()) return unexpected(IngestFault{"no forecast file was named", false});
+  if (grid_file.empty()) return files;
+  files.erase(std::remove(files.begin(), files.end(), grid_file), files.end());
+  files.push_back(grid_file);
   return files;
 }
 
@@ -115,8 +125,13 @@ Job job_for(std::vector<std::string> files, const IngestOptions& options, const 
     request.input = options.cache->refused_list(recipe_of(options));
   }
   for (auto& argument : reading_arguments(options)) arguments.push_back(std::move(argument));
+  const bool grid = !options.grid_file.empty() && job.files.size() > 1 && job.files.back() == options.grid_file;
+  if (grid) {
+    arguments.emplace_back("--grid-file");
+    arguments.push_back(options.grid_file);
+  }
   arguments.emplace_back("--");
-  arguments.insert(arguments.end(), job.files.begin(), job.files.end());
+  arguments.insert(arguments.end(), job.files.begin(), job.files.end() - (grid ? 1 : 0));
   return job;
 }
 
@@ -334,7 +349,9 @@ class Ingestion : public std::enable_shared_from_this<Ingestion> {
 
   /// A bad file is left out and the others are tried, unless it is the only one.
   void fail(const IngestFault& fault, std::optional<std::size_t> file) {
-    if (file && *file < files_.size() && files_.size() > 1 && left_out_.size() < kLeftOutAtMost) {
+    // Without its grid a model would be read as something else.
+    const bool grid = file && *file < files_.size() && files_[*file] == options_.grid_file;
+    if (file && !grid && *file < files_.size() && files_.size() > 1 && left_out_.size() < kLeftOutAtMost) {
       left_out_.push_back({files_[*file], fault.what});
       passing_ = passing_ || fault.passing;
       files_.erase(files_.begin() + static_cast<std::ptrdiff_t>(*file));
@@ -410,7 +427,7 @@ IngestStory read_story(const std::string& out) {
 
 IngestResult ingest_files(const std::vector<std::string>& patterns, const IngestOptions& options,
                           const world::World& world) {
-  auto files = files_of(patterns, world);
+  auto files = files_of(patterns, options.grid_file, world);
   if (!files) return unexpected(files.error().what);
   auto without_cache = options;
   without_cache.cache.reset();
@@ -422,7 +439,7 @@ IngestResult ingest_files(const std::vector<std::string>& patterns, const Ingest
 
 void ingest_files_async(const std::vector<std::string>& patterns, const IngestOptions& options,
                         const world::World& world, std::function<void(IngestOutcome)> then) {
-  auto files = files_of(patterns, world);
+  auto files = files_of(patterns, options.grid_file, world);
   if (!files) {
     world.net.post([then = std::move(then), fault = files.error()] { then(unexpected(fault)); });
     return;

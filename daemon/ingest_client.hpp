@@ -22,8 +22,11 @@ struct IngestOptions {
   std::optional<Area> area;  ///< part to keep; none: all
   std::string heights;       ///< "always", "never"; empty: currents from heights where a file has no velocity
   std::optional<double> equator_band_deg, fill_gaps_km;  ///< none: as glidehelm-ingest has it
-  std::string keep_in;       ///< folder where the grid keeps its name (another process maps it too); empty: none
-  Seconds deadline{300};     ///< on the wall; longer than the CPU time that the child may use
+  std::string grid_file;  ///< of a model whose grid is not in its forecasts; never left out of a set; empty: none
+  std::string rotation;   ///< "angle", "grid", "none"; empty: recognised
+  std::string s_levels;   ///< "vtransform=…,vstretching=…,theta_s=…,theta_b=…,hc=…"; empty: as the files say
+  std::string keep_in;    ///< folder where the grid keeps its name (another process maps it too); empty: none
+  Seconds deadline{300};  ///< on the wall; longer than the CPU time that the child may use
   /// Of the child, bytes; 0: no limit. Enough for a file of 4 GB beside its grid.
   std::size_t memory_at_most{std::size_t{8} << 30};
   Seconds settle{0};                 ///< how long a file must have been left alone; a younger one is waited for

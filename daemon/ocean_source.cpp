@@ -33,6 +33,12 @@ ocean::Coverage box_of(const OceanOrder& order) {
   return box;
 }
 
+/// As the child reads it.
+std::string s_levels_text(const mission::Currents::SLevels& levels) {
+  return fmt::format("vtransform={},vstretching={},theta_s={:.9g},theta_b={:.9g},hc={:.9g}", levels.vtransform,
+                     levels.vstretching, levels.theta_s, levels.theta_b, levels.critical_depth.si());
+}
+
 IngestOptions ingest_options(const OceanOrder& order) {
   IngestOptions options;
   options.east = order.mission.currents.east_variable;
@@ -45,6 +51,13 @@ IngestOptions ingest_options(const OceanOrder& order) {
   if (currents.equator_band != mission::Currents{}.equator_band)
     options.equator_band_deg = currents.equator_band.si() * 180 / kPi;
   if (currents.fill_gaps) options.fill_gaps_km = currents.fill_gaps->si() / 1000;
+  options.grid_file = currents.grid_file;
+  using Rotation = mission::Currents::Rotation;
+  options.rotation = currents.rotation == Rotation::angle  ? "angle"
+                     : currents.rotation == Rotation::grid ? "grid"
+                     : currents.rotation == Rotation::none ? "none"
+                                                           : "";
+  if (currents.s_levels) options.s_levels = s_levels_text(*currents.s_levels);
   options.keep_in = order.grids;
   options.cache = order.cache;
   options.settle = order.settle;

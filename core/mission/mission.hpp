@@ -35,6 +35,17 @@ struct Currents {
   Heights heights{Heights::when_needed};  ///< heights: currents from the slope of the sea surface
   Radians equator_band{degrees(5)};       ///< equator_band_deg: latitude below which that slope says nothing
   std::optional<Metres> fill_gaps;        ///< fill_gaps_km; none: two cells of HF radar files
+  std::string grid_file;                  ///< grid_file: positions, masks, angle and depth of a model; empty: none
+  enum class Rotation { recognised, angle, grid, none };
+  Rotation rotation{Rotation::recognised};  ///< rotation: how velocities along a model's axes become east and north
+  /// s_levels: the stretching of ROMS levels that the files do not describe.
+  struct SLevels {
+    int vtransform{}, vstretching{};
+    double theta_s{}, theta_b{};
+    Metres critical_depth{};  ///< hc_m
+    friend bool operator==(const SLevels&, const SLevels&) = default;
+  };
+  std::optional<SLevels> s_levels;
   double coastal_fill_cells{1.5};
   bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
   Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …

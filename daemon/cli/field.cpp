@@ -59,8 +59,12 @@ ordered_json info_json(const ocean::GridView& view) {
   json["variables"] = {{"east", {{"name", facts.east_variable}, {"unit", text_or_null(facts.east_unit)}}},
                        {"north", {{"name", facts.north_variable}, {"unit", text_or_null(facts.north_unit)}}},
                        {"recognised_by", facts.recognised_by}};
-  json["grid"] = {
-      {"kind", "rectilinear"}, {"latitudes", axis_json(axes.lats_deg)}, {"longitudes", axis_json(axes.lons_deg)}};
+  // "curvilinear Arakawa C grid of …; turned by …": the published grid, and the way onto this one.
+  const std::string kind = facts.layout.rfind("curvilinear", 0) == 0 ? "curvilinear" : "rectilinear";
+  json["grid"] = {{"kind", kind},
+                  {"published_as", text_or_null(facts.layout)},
+                  {"latitudes", axis_json(axes.lats_deg)},
+                  {"longitudes", axis_json(axes.lons_deg)}};
   json["extent"] = {{"west_deg", axes.lons_deg.front()},
                     {"east_deg", axes.lons_deg.back()},
                     {"south_deg", axes.lats_deg.front()},
@@ -98,6 +102,7 @@ void print_info(const ocean::GridView& view, std::ostream& out) {
   out << "grid       rectilinear, " << axes.lats_deg.size() << " latitudes " << decimal(axes.lats_deg.front(), 4)
       << " to " << decimal(axes.lats_deg.back(), 4) << ", " << axes.lons_deg.size() << " longitudes "
       << decimal(axes.lons_deg.front(), 4) << " to " << decimal(axes.lons_deg.back(), 4) << '\n';
+  if (!facts.layout.empty()) out << "published  " << facts.layout << '\n';
   if (axes.has_time)
     out << "times      " << axes.times_s.size() << ", " << time_text(axes.times_s.front()) << " to "
         << time_text(axes.times_s.back()) << '\n';

@@ -24,7 +24,8 @@ struct FieldInfoOptions {
 ///
 /// JSON on `out`, schema glidehelm/field-info/v1: {"schema", "cycle", "reference_time" (null when not named), "provenance",
 /// "variables": {"east": {"name", "unit" (null: none, taken as m/s)}, "north": {…}, "recognised_by"},
-/// "grid": {"kind": "rectilinear", "latitudes": AXIS, "longitudes": AXIS}, "extent": {"west_deg", "east_deg", "south_deg",
+/// "grid": {"kind": "rectilinear" or "curvilinear" (as published), "published_as" (how a model's own grid was read and
+/// brought onto these axes, in words; null: it is these axes), "latitudes": AXIS, "longitudes": AXIS}, "extent": {"west_deg", "east_deg", "south_deg",
 /// "north_deg", "around_globe"}, "times": {"count", "first", "last", "longest_step_s", "unit"} (null without a time axis),
 /// "depths_m": […] (empty without a depth axis), "wet_fraction", "speed_m_per_s": {"min", "mean", "max"},
 /// "sources": [{"file", "sha256"}], "warnings": […]}, AXIS being {"count", "first_deg", "last_deg", "step_deg" (mean),

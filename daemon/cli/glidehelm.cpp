@@ -180,6 +180,12 @@ void add_reading(CLI::App* verb, daemon::IngestOptions& ingest) {
           "--fill-gaps", [&ingest](double value) { ingest.fill_gaps_km = value; },
           "Km up to which gaps of surface currents are filled (default: two cells of HF radar)")
       ->check(CLI::Range(0.0, 500.0));
+  verb->add_option("--grid-file", ingest.grid_file, "A model's grid that lies apart from its forecasts");
+  verb->add_option("--rotation", ingest.rotation,
+                   "Velocities on a turned grid: along its axes, turned by its angle or by the grid; or none of both")
+      ->check(CLI::IsMember({"angle", "grid", "none"}));
+  verb->add_option("--s-levels", ingest.s_levels,
+                   "ROMS levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
 }
 
 void add_field(CLI::App& app, Action& action) {

@@ -138,6 +138,21 @@ TEST_CASE("heights and gaps are read as the mission says, and as the files say w
   CHECK_FALSE(plain.fill_gaps);
 }
 
+TEST_CASE(
+    "a model's grid, rotation and s-levels are read, the grid beside the mission, the levels whole or not at all") {
+  const auto c = read(
+      "currents: {files: [a.nc], grid_file: /grids/g.nc, rotation: grid, s_levels: {vtransform: 2, vstretching: 4, "
+      "theta_s: 5, theta_b: 0.4, hc_m: 50}}\n");
+  CHECK(c.grid_file == "/grids/g.nc");
+  CHECK(c.rotation == mission::Currents::Rotation::grid);
+  REQUIRE(c.s_levels);
+  CHECK(*c.s_levels == mission::Currents::SLevels{2, 4, 5, 0.4, Metres{50}});
+  const auto plain = read("currents: {files: [a.nc]}\n");
+  CHECK(plain.grid_file.empty());
+  CHECK(plain.rotation == mission::Currents::Rotation::recognised);
+  CHECK_FALSE(plain.s_levels);
+}
+
 TEST_CASE("an address under currents is no name of a file beside the mission") {
   CHECK(config::path_beside("/etc/glidehelm/leg.yaml", "http://server/sea") == "http://server/sea");
   CHECK(config::path_beside("/etc/glidehelm/leg.yaml", "currents/a.nc") == "/etc/glidehelm/currents/a.nc");

@@ -194,6 +194,24 @@ TEST_CASE("the child is told which files, where to write and how to read, and no
   CHECK(desk.disk.contents.empty());
 }
 
+TEST_CASE("a model's grid is given as one, whether the pattern matches it too or not, and its options with it") {
+  Desk desk;
+  IngestOptions options;
+  options.grid_file = "/data/b.nc";
+  options.rotation = "grid";
+  options.s_levels = "vtransform=2,vstretching=4,theta_s=5,theta_b=0.4,hc=50";
+  const auto loaded = ingest_files({"/data/*.nc", "/more/c.nc"}, options, desk.world);
+  REQUIRE(loaded);
+  CHECK(desk.child.asked.arguments ==
+        std::vector<std::string>{"-o", "/scratch/glidehelm-42.grid", "--tell", "--rotation", "grid", "--s-levels",
+                                 "vtransform=2,vstretching=4,theta_s=5,theta_b=0.4,hc=50", "--grid-file", "/data/b.nc",
+                                 "--", "/data/a.nc", "/more/c.nc"});
+  CHECK((*loaded)->files == std::vector<std::string>{"/data/a.nc", "/more/c.nc", "/data/b.nc"});
+  auto plain = options;
+  plain.rotation.clear();
+  CHECK(recipe_of(options) != recipe_of(plain));
+}
+
 TEST_CASE("a refusal of the child is passed on without its name, its warnings left out") {
   Desk desk;
   desk.child.grid.clear();

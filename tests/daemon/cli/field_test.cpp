@@ -6,6 +6,7 @@
 
 #include "core/base/utc.hpp"
 #include "daemon/world/real.hpp"
+#include "tests/daemon/ingest/model_file.hpp"
 #include "tests/support/data.hpp"
 #include "tests/support/netcdf.hpp"
 
@@ -87,6 +88,21 @@ FieldSampleOptions at(const std::string& file, double lat, double lon, const cha
 }
 
 }  // namespace
+
+TEST_CASE("field info says in words how a model's own grid was read") {
+  const test::ScratchFolder folder;
+  const auto model = test::Turned{}.file([](double, double) { return 0.3; }, [](double, double) { return -0.4; });
+  const auto file = test::make_netcdf(folder, "roms.nc", model.cdl());
+  const auto document = info({file}).document();
+  CHECK(document["grid"]["kind"] == "curvilinear");
+  const auto published = document["grid"]["published_as"].get<std::string>();
+  for (const char* part : {"curvilinear Arakawa C grid of 6 by 7 points (lat_rho, lon_rho)", "turned by angle (",
+                           "land where values are missing", "brought onto "})
+    CHECK(published.find(part) != std::string::npos);
+  const auto text = info({file}, false).out;
+  CHECK(text.find("published  curvilinear Arakawa C grid") != std::string::npos);
+  CHECK(info({shelf(folder)}, false).out.find("published") == std::string::npos);
+}
 
 TEST_CASE("field info says what a forecast is, as JSON") {
   const test::ScratchFolder folder;

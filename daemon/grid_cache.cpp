@@ -67,7 +67,7 @@ void bound(Map& map, std::size_t most) {
                                [](const auto& a, const auto& b) { return a.second.age < b.second.age; }));
 }
 
-bool one_line(const std::string& text) { return text.find('\n') == std::string::npos; }
+bool is_one_line(const std::string& text) { return text.find('\n') == std::string::npos; }
 
 std::string checksum_line(std::string_view text) { return "sum " + std::to_string(crc32c(text)) + "\n"; }
 
@@ -175,7 +175,7 @@ std::optional<std::vector<Sha256>> GridCache::contents(const std::vector<std::st
 }
 
 void GridCache::learn(const std::string& path, const FileIdentity& identity, const Sha256& content) {
-  if (!one_line(path)) return;
+  if (!is_one_line(path)) return;
   known_[path] = {identity, content, ++age_};
   bound(known_, limits_.memories);
   changed_ = true;

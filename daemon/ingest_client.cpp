@@ -5,6 +5,7 @@
 #include <sstream>
 #include <utility>
 
+#include "core/base/one_line.hpp"
 #include "core/base/utc.hpp"
 #include "daemon/world/program_version.hpp"
 
@@ -145,7 +146,7 @@ std::string complaint(const std::string& text) {
     at = end + 1;
     constexpr std::string_view kName = "glidehelm-ingest: ";
     if (line.compare(0, kName.size(), kName) == 0) line.erase(0, kName.size());
-    if (!line.empty() && line.compare(0, 9, "warning: ") != 0) found = line;
+    if (!line.empty() && line.compare(0, 9, "warning: ") != 0) found = one_line(line);
   }
   return found;
 }

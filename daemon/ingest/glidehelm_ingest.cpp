@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/one_line.hpp"
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 #include "daemon/ingest/join.hpp"
@@ -53,7 +54,7 @@ class Story {
 constexpr int kRefused = 1, kMemory = 3, kRefusedBefore = 4, kNotNow = 5;
 
 int refuse(const std::string& what) {
-  std::cerr << "glidehelm-ingest: " << what << '\n';
+  std::cerr << "glidehelm-ingest: " << one_line(what) << '\n';
   return kRefused;
 }
 int misuse(const std::string& what) {
@@ -234,6 +235,14 @@ Expected<std::vector<Part>, int> read_parts(const Story& story, Sources& sources
   return unexpected(parts.error().alone && names.size() == 1 ? kNotNow : code);
 }
 
+/// Names and units are a stranger's words: from here on they stand in logs.
+void clean_words(ocean::GridFacts& facts) {
+  for (std::string* text : {&facts.cycle, &facts.east_variable, &facts.north_variable, &facts.east_unit,
+                            &facts.north_unit, &facts.recognised_by, &facts.time_unit, &facts.layout})
+    *text = one_line(*text);
+  for (auto& warning : facts.warnings) warning = one_line(warning);
+}
+
 int run(const Arguments& arguments) {
   ReadOptions options;
   if (const auto wrong = read_options(arguments, options)) return misuse(*wrong);
@@ -263,6 +272,7 @@ int run(const Arguments& arguments) {
   auto grid = join(std::move(*parts));
   if (!grid) return refuse(grid.error().what);
   grid->facts.sources = sources->identities();  // in the order of the arguments, a model's grid with them
+  clean_words(grid->facts);
   for (const auto& warning : grid->facts.warnings) std::cerr << "glidehelm-ingest: warning: " << warning << '\n';
   story.tell("writing");
   const std::string bytes = ocean::write_grid(*grid);

@@ -111,7 +111,7 @@ TEST_CASE("ten thousand damaged files of every format: whatever becomes of the c
       const auto end = result ? std::string{"read"} : end_of(result.error());
       ++ends[end];
       if (!result) {
-        INFO(kind << " " << i);
+        INFO(kind << " " << i << ": " << result.error());
         // The answer is one line and names the file.
         CHECK(result.error().find(folder / "bad.nc") != std::string::npos);
         CHECK(result.error().find('\n') == std::string::npos);

@@ -437,3 +437,10 @@ TEST_CASE("the output replaces what was there, whole") {
     left += entry.path().filename().string().find("grid") != std::string::npos ? 1 : 0;
   CHECK(left == 0);  // the grid itself was read and removed above; nothing staged stays
 }
+
+TEST_CASE("what stands in a file's attributes cannot make lines of its own in a log") {
+  CHECK(refusal(replaced(kPlain, "hours since 2024-01-01", "moons\\nALERT sim01\\033[31m since 2024-01-01")) ==
+        "axis time: the time unit \"moons?ALERT sim01?[31m since 2024-01-01\" cannot be read; allowed is like \"hours "
+        "since "
+        "1950-01-01 00:00:00\"\n");
+}

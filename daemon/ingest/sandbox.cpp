@@ -7,6 +7,9 @@ namespace glidehelm::ingest {
 Expected<Done, std::string> enter_sandbox(const std::string& output_folder, bool network) {
   world::Confinement order;
   order.read_below = {"/usr", "/lib", "/lib64", "/etc"};
+#if defined(__SANITIZE_ADDRESS__)
+  order.read_below.emplace_back("/proc");  // where the search for leaks at the end looks for threads
+#endif
   order.write_below = {output_folder};
   if (network) {
     order.read_below.emplace_back("/run/systemd/resolve");

@@ -72,6 +72,14 @@ std::string mutated(std::string bytes, test::FixedRng& rng) {
   return bytes;
 }
 
+/// The folder in which the client has its grids made, for as long as this lives.
+struct GridsIn {
+  explicit GridsIn(const std::string& path) { ::setenv("TMPDIR", path.c_str(), 1); }
+  ~GridsIn() { ::unsetenv("TMPDIR"); }
+  GridsIn(const GridsIn&) = delete;
+  GridsIn& operator=(const GridsIn&) = delete;
+};
+
 int count_wanted(int by_itself) {
   const char* wanted = std::getenv("GLIDEHELM_MUTATIONS");
   return wanted != nullptr ? std::atoi(wanted) : by_itself;
@@ -91,7 +99,7 @@ TEST_CASE("ten thousand damaged files of every format: whatever becomes of the c
   const int count = count_wanted(60);
   const test::ScratchFolder folder;
   std::filesystem::create_directory(folder / "grids");
-  ::setenv("TMPDIR", (folder / "grids").c_str(), 1);  // where the client has its grids made
+  const GridsIn grids{folder / "grids"};
   world::RealWorld real;
   auto world = real.world();
   const char* only = std::getenv("GLIDEHELM_FORMAT");
@@ -132,7 +140,6 @@ TEST_CASE("ten thousand damaged files of every format: whatever becomes of the c
   }
   // Nothing is left of any child.
   CHECK(std::filesystem::is_empty(folder / "grids"));
-  ::unsetenv("TMPDIR");
 }
 
 TEST_CASE("a classic file cut at two hundred places is refused two hundred times") {

@@ -25,13 +25,14 @@ bool later(const OceanSource& a, const OceanSource& b) {
 }  // namespace
 
 ForecastWatch::ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache,
-                             Seconds settle)
+                             Seconds settle, OceanPool* pool)
     : world_{world},
       grids_{std::move(grids)},
       handlers_{std::move(handlers)},
       cache_{std::move(cache)},
       // A child cannot wait on a clock that stands still: in a simulated world files are complete when they are there.
       settle_{world.clock.simulated() ? Seconds{0} : settle},
+      pool_{pool},
       alive_{std::make_shared<bool>(true)} {}
 
 ForecastWatch::~ForecastWatch() { *alive_ = false; }
@@ -107,12 +108,16 @@ void ForecastWatch::load(std::string seen) {
       handlers_.noted("forecasts are not kept: " + cache.error());
   }
   const auto asked = order();
-  load_ocean_async(asked, world_, [this, asked, alive = alive_, generation = generation_](OceanOutcome outcome) {
+  auto then = [this, asked, alive = alive_, generation = generation_](OceanOutcome outcome) {
     if (!*alive) return;
     loading_ = false;
     if (generation == generation_) loaded(asked, std::move(outcome));
     if (again_ || generation != generation_) look();
-  });
+  };
+  if (pool_ != nullptr)
+    pool_->load(asked, seen_, world_, std::move(then));
+  else
+    load_ocean_async(asked, world_, std::move(then));
 }
 
 /// A forecast of another time than ours, or nothing when it is one to use.

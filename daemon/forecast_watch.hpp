@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "daemon/ocean_source.hpp"
+#include "daemon/ocean_pool.hpp"
 
 namespace glidehelm::daemon {
 
@@ -27,9 +27,10 @@ class ForecastWatch {
   };
   /// How long a published file must have been left alone, but on a simulated clock.
   static constexpr Seconds kSettle{10};
-  /// `grids`: the folder of the cache; `cache`: shared by all watches of a daemon; none: opened here.
+  /// `grids`: the folder of the cache; `cache`: shared by all watches of a daemon; none: opened here. `pool`: shared as well, and
+  /// outlives them; none: this watch loads for itself alone.
   ForecastWatch(world::World world, std::string grids, Handlers handlers, std::shared_ptr<GridCache> cache = nullptr,
-                Seconds settle = kSettle);
+                Seconds settle = kSettle, OceanPool* pool = nullptr);
   ~ForecastWatch();
 
   /// From now on these currents; loads them.
@@ -59,6 +60,7 @@ class ForecastWatch {
   Handlers handlers_;
   std::shared_ptr<GridCache> cache_;
   Seconds settle_;
+  OceanPool* pool_;
   std::optional<mission::Mission> mission_;
   std::shared_ptr<const OceanSource> current_;
   std::string seen_, problem_, said_;

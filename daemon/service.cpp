@@ -142,7 +142,8 @@ Expected<std::unique_ptr<Session>, std::string> Service::make_session(const conf
                         why + ": the process ends at once and reads the disk again when it is restarted");
               stop(kExitNotDurable, "");
             },
-            cache_};
+            cache_,
+            &oceans_};
   auto session = std::make_unique<Session>(entry, std::move(desk));
   const auto chain = chain_for(entry.name, configuration);
   if (auto opened = session->open(chain.empty() ? kDefaultSlot : chain.front().mission.slot); !opened)

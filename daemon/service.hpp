@@ -52,6 +52,7 @@ class Service {
   std::shared_ptr<GridCache> cache_;
   std::unique_ptr<Journal> journal_;
   std::unique_ptr<PlanningWorker> worker_;
+  OceanPool oceans_;
   std::vector<std::unique_ptr<Session>> sessions_;
   int exit_code_{};
   bool stopping_{};

@@ -44,7 +44,9 @@ Session::Session(config::GliderEntry entry, Desk desk)
                    plan_waiting();
                    desk_.changed();
                  }},
-                desk_.cache},
+                desk_.cache,
+                ForecastWatch::kSettle,
+                desk_.oceans},
       alive_{std::make_shared<bool>(true)} {}
 
 Session::~Session() {

@@ -29,6 +29,7 @@ struct Desk {
   std::function<void(const std::string&, std::uint64_t)> handled;  ///< bytes of a line, in total, are handled
   std::function<void(const std::string&)> fatal;  ///< the journal or a folder failed in a way that ends the process
   std::shared_ptr<GridCache> cache{};             ///< of the folder of grids, for all sessions
+  OceanPool* oceans{};                            ///< forecasts shared with other gliders; none: shared with nobody
 };
 
 /// One glider: its line and dialog (session_line.cpp), its pilot (session.cpp), the hands that carry out what the pilot wants

@@ -85,7 +85,8 @@ void CoastalField::draw_eddies(const CoastalSpec& spec, Variant variant) {
 }
 
 Offset CoastalField::plane(GeoPoint p) const {
-  const double dlon = std::remainder(p.lon.radians() - lon0_, 2 * kPi);
+  double dlon = p.lon.radians() - lon0_;
+  if (dlon > kPi || dlon < -kPi) dlon = std::remainder(dlon, 2 * kPi);
   return {dlon * metric_.parallel_radius, (p.lat.radians() - lat0_) * metric_.meridian_radius};
 }
 

@@ -29,7 +29,9 @@ MesoscaleNoise::MesoscaleNoise(const OceanError& spec, double lat0, double lon0,
     const double direction = random.uniform(0, 2 * kPi), phase = random.uniform(0, 2 * kPi);
     const double sigma = std::pow(k / k_long, 2.0 / 3.0) / (3600.0 * spec.lasting_h);
     const double speed = std::sqrt(std::pow(k / k_long, spec.slope + 1));  // amplitude: its square is E(k)·k
-    waves_.push_back({k * std::sin(direction), k * std::cos(direction), speed, sigma * random.normal(), phase});
+    Wave wave{k * std::sin(direction), k * std::cos(direction), speed, sigma * random.normal(), phase};
+    wave.k = std::hypot(wave.kx, wave.ky);
+    waves_.push_back(wave);
     energy += speed * speed / 2;  // mean of a squared sine
   }
   for (auto& wave : waves_) {
@@ -39,14 +41,15 @@ MesoscaleNoise::MesoscaleNoise(const OceanError& spec, double lat0, double lon0,
 }
 
 Current MesoscaleNoise::at(GeoPoint p, Depth z, double t_s) const {
-  const double x = std::remainder(p.lon.radians() - lon0_, 2 * kPi) * parallel_;
+  double dlon = p.lon.radians() - lon0_;
+  if (dlon > kPi || dlon < -kPi) dlon = std::remainder(dlon, 2 * kPi);
+  const double x = dlon * parallel_;
   const double y = (p.lat.radians() - lat0_) * meridian_;
   double u = 0, v = 0;
   for (const auto& wave : waves_) {
     const double s = wave.speed * std::sin(wave.kx * x + wave.ky * y - wave.omega * (t_s - start_s_) + wave.phase);
-    const double k = std::hypot(wave.kx, wave.ky);
-    u += s * wave.ky / k;
-    v -= s * wave.kx / k;
+    u += s * wave.ky / wave.k;
+    v -= s * wave.kx / wave.k;
   }
   const double share = fading_ > 0 ? std::exp(-z.below_surface.si() / fading_) : 1.0;
   return {MetresPerSecond{share * u}, MetresPerSecond{share * v}};
@@ -58,7 +61,11 @@ PerturbedField::PerturbedField(ocean::FieldRef model, const OceanError& error, d
       noise_{error, 0.5 * (model.coverage().south + model.coverage().north),
              middle(model.coverage().west, model.coverage().east), start_s},
       start_s_{start_s},
-      tide_phase_{Random{error.seed}.stream(42).uniform(0, 2 * kPi)} {}
+      tide_phase_{Random{error.seed}.stream(42).uniform(0, 2 * kPi)},
+      shift_east_{std::sin(degrees(error.shift_toward_deg).si())},
+      shift_north_{std::cos(degrees(error.shift_toward_deg).si())},
+      tide_east_{std::sin(degrees(error.tide_toward_deg).si())},
+      tide_north_{std::cos(degrees(error.tide_toward_deg).si())} {}
 
 MetresPerSecond PerturbedField::fastest() const {
   return MetresPerSecond{model_.fastest().si() + noise_.bound() +
@@ -71,10 +78,10 @@ Expected<ocean::Sample, ocean::NoCurrent> PerturbedField::sample(GeoPoint p, Dep
   auto here = model_.sample(p, z, t_s);
   if (!here) return here;
   if (error_.shift_km != 0 || error_.late_h != 0) {
-    const double toward = degrees(error_.shift_toward_deg).si(), metres = 1e3 * error_.shift_km;
+    const double metres = 1e3 * error_.shift_km;
     const auto metric = LocalMetric::at(p.lat.radians());
-    const auto from = GeoPoint::from_kernel(p.lat.radians() - metres * std::cos(toward) / metric.meridian_radius,
-                                            p.lon.radians() - metres * std::sin(toward) / metric.parallel_radius);
+    const auto from = GeoPoint::from_kernel(p.lat.radians() - metres * shift_north_ / metric.meridian_radius,
+                                            p.lon.radians() - metres * shift_east_ / metric.parallel_radius);
     if (const auto moved = model_.sample(from, z, t_s - 3600.0 * error_.late_h)) here = moved;
   }
   const auto noise = noise_.at(p, z, t_s);
@@ -83,9 +90,8 @@ Expected<ocean::Sample, ocean::NoCurrent> PerturbedField::sample(GeoPoint p, Dep
     const double phase = 2 * kPi * (t_s - start_s_) / kM2Period + tide_phase_;
     const double major = error_.tide_m_per_s * std::cos(phase),
                  minor = error_.tide_m_per_s * error_.tide_ratio * std::sin(phase);
-    const double toward = degrees(error_.tide_toward_deg).si();
-    east += major * std::sin(toward) + minor * std::cos(toward);
-    north += major * std::cos(toward) - minor * std::sin(toward);
+    east += major * tide_east_ + minor * tide_north_;
+    north += major * tide_north_ - minor * tide_east_;
   }
   return ocean::Sample{{MetresPerSecond{east}, MetresPerSecond{north}}, here->extrapolated};
 }

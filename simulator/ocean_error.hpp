@@ -43,6 +43,7 @@ class MesoscaleNoise {
 
   struct Wave {
     double kx, ky, speed, omega, phase;  ///< rad/m, rad/m, m/s, rad/s, rad
+    double k{};                          ///< rad/m: length of (kx, ky)
   };
   [[nodiscard]] const std::vector<Wave>& waves() const { return waves_; }
 
@@ -66,6 +67,7 @@ class PerturbedField {
   OceanError error_;
   MesoscaleNoise noise_;
   double start_s_, tide_phase_;
+  double shift_east_, shift_north_, tide_east_, tide_north_;  ///< unit vectors of the two directions
 };
 
 }  // namespace glidehelm::simulator

@@ -176,11 +176,10 @@ class Flyer {
     Vector current, truly, reckoned;
     Vector target;  ///< of the waypoint, seen from the dead-reckoned position
   };
-  Expected<Motion, FlightEnd> motion(const Position& here, const Position& reckoned, double depth, double t_s,
+  Expected<Motion, FlightEnd> motion(const Position& here, const Geodesic& aim, double depth, double t_s,
                                      Current believed) {
     const auto c = current_at(here, depth, t_s);
     if (!c) return unexpected(c.error());
-    const auto aim = geodesic(reckoned.at(), order_.points[target_]);
     const double heading =
         steered_heading(aim.departing.from_north().si(), believed, order_.glider.believed_speed.si());
     const double east = std::sin(heading), north = std::cos(heading);
@@ -201,7 +200,7 @@ class Flyer {
       if (!hits(reckoned)) return unexpected(FlightEnd::list_finished);
       auto dt = step_before(until);
       if (!dt) return unexpected(dt.error());
-      const auto start = motion(here_, reckoned, yo_depth(order_.glider, now_ - from, length), now_, believed);
+      const auto start = motion(here_, aim_, yo_depth(order_.glider, now_ - from, length), now_, believed);
       if (!start) return unexpected(start.error());
       flight_.farthest_target = std::max(flight_.farthest_target, std::hypot(start->target.east, start->target.north));
       // The ring is looked for in the plane around the waypoint; a step that crosses it ends there.
@@ -212,8 +211,8 @@ class Flyer {
       const Position middle = half_way(here_, start->truly, *dt),
                      middle_reckoned = half_way(reckoned, start->reckoned, *dt);
       const double t_middle = now_ + *dt / 2;
-      const auto v =
-          motion(middle, middle_reckoned, yo_depth(order_.glider, t_middle - from, length), t_middle, believed);
+      const auto v = motion(middle, geodesic(middle_reckoned.at(), order_.points[target_]),
+                            yo_depth(order_.glider, t_middle - from, length), t_middle, believed);
       if (!v) return unexpected(v.error());
       reckoned = moved(reckoned, {v->reckoned.east * *dt, v->reckoned.north * *dt}, middle_reckoned.lat);
       sum = {sum.east + v->current.east * *dt, sum.north + v->current.north * *dt};
@@ -223,10 +222,14 @@ class Flyer {
   }
 
   /// Passes over the waypoints that the dead-reckoned position has hit. False when the list has run out. When all rings
-  /// hold the position (a list of one point does from its arrival on) the glider steers on to the target it has.
+  /// hold the position (a list of one point does from its arrival on) the glider steers on to the target it has. The way
+  /// to the target in hand stays in `aim_`.
   bool hits(const Position& reckoned) {
     steers_only_ = false;
-    for (std::size_t passed = 0; distance(reckoned.at(), order_.points[target_]) < order_.radius; ++passed) {
+    const auto here = reckoned.at();
+    for (std::size_t passed = 0;; ++passed) {
+      aim_ = geodesic(here, order_.points[target_]);
+      if (aim_.length >= order_.radius) return true;
       const bool last = target_ + 1 == order_.points.size();
       if (last && order_.at_end == model::AtEnd::wait) return false;
       if (passed == order_.points.size() || order_.points.size() == 1) {
@@ -235,7 +238,6 @@ class Flyer {
       }
       target_ = last ? 0 : target_ + 1;
     }
-    return true;
   }
 
   static constexpr double kInstant = 1e-3;  // seconds: shorter than anything that matters, longer than rounding
@@ -247,6 +249,7 @@ class Flyer {
   Position here_;
   double now_{};
   std::size_t target_{};
+  Geodesic aim_{};
   bool steers_only_{};
 };
 

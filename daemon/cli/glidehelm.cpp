@@ -14,6 +14,7 @@
 #include "daemon/cli/replay.hpp"
 #include "daemon/world/program_version.hpp"
 #include "daemon/world/real.hpp"
+#include "daemon/world/terminal.hpp"
 
 namespace {
 
@@ -94,14 +95,15 @@ void add_rehearse(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("rehearse", "Fly a mission in simulated oceans that differ from the forecast");
   verb->add_option("MISSION", r.plan.mission, "Mission file (schema glidehelm/mission/v1)")->required();
   verb->add_option("--truth", r.truth,
-                   "Forecast files that play the ocean (default: the mission's forecast, perturbed)");
-  verb->add_option("--seeds", r.seeds, "Flights of each kind, seeds 1 to N")
+                   "Forecast files that play the ocean (default: the mission's forecast, perturbed; then --noise, "
+                   "--shift and --late do nothing)");
+  verb->add_option("--seeds", r.seeds, "Oceans to fly in, seeds 1 to N")
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
   verb->add_option("--method", r.plan.method, "direct, cts-astar or best (default: the mission's)");
   auto* from = verb->add_option("--from", o->from, "LAT,LON of the start, degrees (default: the mission's start)");
   auto* at = verb->add_option("--at", o->at, "UTC of the start (default: the mission's start time, else now)");
-  verb->add_option("--delays", r.delays_h, "Hours by which the departure is put off, e.g. 0,6,12")
+  verb->add_option("--delays", r.delays_h, "Hours by which the departure is put off, e.g. 0,6,12 (default: 0)")
       ->delimiter(',')
       ->check(CLI::Range(0.0, 10000.0));
   verb->add_option("--noise", r.noise_m_per_s, "Speed of eddies that the forecast does not have, m/s")
@@ -115,7 +117,27 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->check(CLI::Range(0.0, 240.0));
   verb->add_option("--html", r.html, "Write one page with map and table to this new file");
   verb->add_flag("--json", r.json, "One JSON document on standard output (schema glidehelm/rehearsal/v1)");
+  verb->footer(
+      "In every ocean the real pilot flies a simulated glider twice from every departure: by the mission's method, and "
+      "by\n"
+      "`direct`. Ocean and glider are drawn from the seed: the glider's speed differs by 3 % at most, its compass by "
+      "2\n"
+      "degrees, its stints by 3 %. Nothing is drawn otherwise: the same command says the same.\n"
+      "\n"
+      "Examples:\n"
+      "  glidehelm rehearse leg-2.yaml --html leg-2.html\n"
+      "  glidehelm rehearse leg-2.yaml --seeds 20 --delays 0,6,12,18   # when is the best time to leave?\n"
+      "  glidehelm rehearse leg-2.yaml --truth yesterday/*.nc --seeds 3\n"
+      "\n"
+      "Columns: median and 10-90 % of the travel times of those that arrived; regret, by how much they are longer than "
+      "the\n"
+      "plan of somebody who knew the ocean; missed, surface intervals in which no new list reached the glider; "
+      "refused, files\n"
+      "that the verifier did not accept; coast, the closest of all flights; energy, of a flight (median).\n"
+      "Exit: 0 every flight of the mission's method arrived, 1 one did not or nothing can be flown, 2 usage.");
   verb->callback([=, &action] {
+    o->options.progress =
+        world::is_terminal(2) ? cli::RehearseOptions::Progress::bar : cli::RehearseOptions::Progress::lines;
     if (*from) o->options.plan.from = pair_from(o->from, "--from");
     if (*at) o->options.plan.at = time_from(o->at, "--at");
     action = [o](world::World& w) { return cli::run_rehearse(o->options, w, std::cout, std::cerr); };

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/chart/chart.hpp"
-#include "daemon/world/files.hpp"
 
 namespace glidehelm::cli {
 
@@ -31,6 +31,7 @@ struct Rehearsal {
   std::string mission, method, forecast, truth;
   GeoPoint start, goal;
   Metres goal_radius;
+  double departure_s{};  ///< epoch seconds, without a delay
   std::vector<Rehearsed> runs;
 };
 
@@ -43,21 +44,32 @@ struct RehearsalSummary {
   std::optional<double> median_regret;
   double median_surfacings{};
   std::optional<double> closest_coast, median_energy_wh;
+  std::map<std::string, int> rules;  ///< of all flights
 };
 std::vector<RehearsalSummary> summaries(const Rehearsal& rehearsal);
 
 /// The share q of sorted values, with linear interpolation between the two nearest; none of nothing.
 std::optional<double> quantile(std::vector<double> values, double q);
 
+/// Flown over planned with knowledge of the ocean, less one; none when either does not arrive.
+std::optional<double> regret(const Rehearsed& run);
+
 /// The document of product.md 9, with a line feed at its end.
 std::string json_text(const Rehearsal& rehearsal);
 /// The table for a terminal.
 std::string table_text(const Rehearsal& rehearsal);
-/// One page without anything from outside: map and table.
-std::string html_text(const Rehearsal& rehearsal, const chart::Chart& chart);
-/// Writes the page to a new file; what went wrong, or nothing.
-std::string save_page(const Rehearsal& rehearsal, const chart::Chart& chart, const std::string& path,
-                      world::Files& files);
+/// A sentence for each departure: who arrives, and when.
+std::string verdict_text(const Rehearsal& rehearsal);
+/// Heads and cells of the table, also of the page's.
+const std::vector<std::string>& summary_columns();
+std::vector<std::string> summary_row(const RehearsalSummary& summary);
+/// Numbers as the tables have them, without units; "-" when there is none. ">60" kilometres: farther than a chart looks.
+std::string in_hours(const std::optional<double>& seconds);
+std::string in_percent(const std::optional<double>& share);
+std::string in_kilometres(const std::optional<double>& metres);
+std::string in_watt_hours(const std::optional<double>& energy);
+/// "2 x promise arrival, 1 x 2 land".
+std::string rules_text(const std::map<std::string, int>& rules);
 /// "[####      ] 4 of 10 flights".
 std::string progress_bar(std::size_t done, std::size_t of);
 

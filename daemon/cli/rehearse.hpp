@@ -20,6 +20,11 @@ struct RehearseOptions {
   double late_h{1};                   ///< the truth happens up to this much earlier or later (drawn)
   std::string html;                   ///< one page that opens offline; empty: none
   bool json{};
+  enum class Progress {
+    none,
+    lines,                     ///< one at every tenth of the flights: for a file or a pipe
+    bar,                       ///< drawn over itself: for a terminal
+  } progress{Progress::none};  ///< on the error stream
 };
 
 /// Flies the real pilot, planner and verifier against the simulator, in one process and no time: for every seed and departure once
@@ -28,7 +33,9 @@ struct RehearseOptions {
 /// plan of somebody who knew that ocean (`regret_to_hindcast` is flown over planned time less one).
 ///
 /// JSON as in product.md 9. `windows_missed` counts surface intervals in which no new list reached the glider; `closest_coast_m` is
-/// the smallest distance to the shore on the straight lines between dive and surfacing, looked at every kilometre.
+/// the smallest distance to the shore on the straight lines from dive to surfacing to dive, within 50 m, and 60 km (as far as
+/// a chart looks) when it is farther away. `energy_wh` is the simulator's, from the start to the end of the flight.
+/// Nothing is flown when the page could not be written, or when a departure lies outside the forecast.
 /// Returns 0 when every flight of the mission's method arrived, 1 when not or when there is nothing to fly, 2 misuse.
 int run_rehearse(const RehearseOptions& options, world::World& world, std::ostream& out, std::ostream& err);
 

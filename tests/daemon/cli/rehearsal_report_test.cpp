@@ -3,39 +3,11 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "core/base/geo.hpp"
+#include "tests/daemon/cli/rehearsal_sample.hpp"
 
 using namespace glidehelm;
 using namespace glidehelm::cli;
-
-namespace {
-
-Rehearsed run(int seed, const char* method, std::optional<double> travel_h, double hindcast_h) {
-  Rehearsed r;
-  r.seed = seed;
-  r.method = method;
-  if (travel_h) r.travel_s = *travel_h * 3600;
-  r.hindcast_s = hindcast_h * 3600;
-  r.surfacings = 10 * seed;
-  r.missed = 1;
-  r.rules = {{"2 land", seed}};
-  r.track = {geo_point(28, -15), geo_point(28.5, -14.5)};
-  return r;
-}
-
-Rehearsal rehearsal() {
-  Rehearsal all;
-  all.mission = "leg <2>";
-  all.method = "best";
-  all.start = geo_point(28, -15);
-  all.goal = geo_point(28.5, -14.5);
-  all.goal_radius = Metres{2000};
-  all.runs = {run(1, "best", 100, 90), run(1, "direct", std::nullopt, 90), run(2, "best", 120, 100),
-              run(2, "direct", 150, 100)};
-  return all;
-}
-
-}  // namespace
+using glidehelm::test::rehearsal;
 
 TEST_CASE("quantiles of a few values are interpolated between them") {
   CHECK_FALSE(quantile({}, 0.5));
@@ -71,16 +43,48 @@ TEST_CASE("the document has a run per flight with null where nothing is known") 
   CHECK(document["summary"][1]["arrived"] == 1);
 }
 
-TEST_CASE("names are no markup in the page") {
-  const auto page = html_text(rehearsal(), chart::Chart{});
-  CHECK(page.find("leg &lt;2&gt;") != std::string::npos);
-  CHECK(page.find("leg <2>") == std::string::npos);
-  CHECK(page.find("seed 1, direct: not arrived") != std::string::npos);
-}
-
 TEST_CASE("the table has a line per method and departure") {
   const auto text = table_text(rehearsal());
   CHECK(text.find("best          0   2 of 2     110.0  102.0 - 118.0     +15.6") != std::string::npos);
   CHECK(text.find("direct        0   1 of 2     150.0") != std::string::npos);
   CHECK(progress_bar(3, 6) == "[###############               ] 3 of 6 flights");
+}
+
+TEST_CASE("departures are told apart in table, document and verdict") {
+  auto all = rehearsal();
+  for (auto run : rehearsal().runs) {
+    run.delay_h = 6.5;
+    if (run.travel_s) *run.travel_s -= 36'000;
+    all.runs.push_back(run);
+  }
+  const auto text = table_text(all);
+  CHECK(text.find("best        6.5   2 of 2     100.0") != std::string::npos);
+  CHECK(text.find("Departure 2026-03-01T00:00:00Z: best arrives in 2 of 2 oceans, after 110.0 h (median); direct in 1, "
+                  "after 150.0 h.\n"
+                  "Departure 2026-03-01T06:30:00Z: best arrives in 2 of 2 oceans, after 100.0 h (median); direct in 1, "
+                  "after 140.0 h.\n") != std::string::npos);
+  const auto document = nlohmann::json::parse(json_text(all));
+  CHECK(document["summary"].size() == 4);
+  CHECK(document["summary"][2]["delay_h"] == 6.5);
+  CHECK(document["runs"][4]["delay_h"] == 6.5);
+}
+
+TEST_CASE("energy, closest coast and rules stand in table and document, the worst and the middle of all flights") {
+  auto all = rehearsal();
+  all.runs[0].energy_wh = 300;
+  all.runs[2].energy_wh = 340;
+  all.runs[0].closest_coast = 4321;
+  all.runs[2].closest_coast = 12'000;
+  all.runs[1].closest_coast = all.runs[3].closest_coast = chart::Chart::kHorizon;
+  const auto text = table_text(all);
+  CHECK(text.find("4.3      320.0\n") != std::string::npos);
+  CHECK(text.find(">60          -\n") != std::string::npos);  // nothing within the range of a chart; no energy known
+  CHECK(text.find("Files refused by the verifier, best, delay 0 h: 3 x 2 land.\n") != std::string::npos);
+  CHECK(text.find("Not arrived: direct, seed 1, delay 0 h: ran out of time, 12.0 km from the goal at best.\n") !=
+        std::string::npos);
+  const auto document = nlohmann::json::parse(json_text(all));
+  CHECK(document["runs"][0]["energy_wh"] == 300);
+  CHECK(document["summary"][0]["median_energy_wh"] == 320);
+  CHECK(document["summary"][0]["closest_coast_m"] == 4321);
+  CHECK(document["summary"][0]["rules"]["2 land"] == 3);
 }

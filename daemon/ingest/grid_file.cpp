@@ -274,7 +274,7 @@ Result<Centred> centred_by_positions(const ModelFiles& files, const std::optiona
     if (!mesh_v) return unexpected(mesh_v.error());
     const auto [xi, eta] = offset_in_cells(*mesh_u, *mesh_v);
     constexpr double kNear = 0.1;
-    if (std::abs(xi) < kNear && std::abs(eta) < kNear) return Centred{*mesh_u, {}, at_u->words()};
+    if (std::abs(xi) < kNear && std::abs(eta) < kNear) return Centred{*mesh_u, Staggering{}, at_u->words()};
     const int before = xi > 0 ? -1 : 0;
     const double half = xi > 0 ? 0.5 : -0.5;
     if (std::abs(xi - half) < kNear && std::abs(eta + half) < kNear) {
@@ -297,7 +297,7 @@ Result<Centred> centred_by_positions(const ModelFiles& files, const std::optiona
   if (centre && east_north) {
     auto centres = mesh_of(*centre);
     if (!centres) return unexpected(centres.error());
-    return Centred{std::move(*centres), {}, centre->words()};
+    return Centred{std::move(*centres), Staggering{}, centre->words()};
   }
   return fault_alone(
       where(u, v) + " have the shape of the grid's centres but no positions of their own: they may lie on the " +

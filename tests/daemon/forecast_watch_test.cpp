@@ -115,7 +115,7 @@ TEST_CASE("a bad newer file does not replace a good older one: it is said once, 
   CHECK(post.loaded.size() == 1);
 }
 
-TEST_CASE("a refused file that is touched, copied or named anew is known by its content; a corrected one is read") {
+TEST_CASE("a refused file that is touched, copied or named anew is known by its content, a corrected one is read") {
   Post post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.shelf.publish_bad("b.nc", "every value is missing");

@@ -70,7 +70,7 @@ TEST_CASE("a grid that was taken in is found again, also by the next daemon") {
   CHECK(damage.empty());
 }
 
-TEST_CASE("a damaged grid is removed and said, never used; a bad one is never taken in") {
+TEST_CASE("a damaged grid is removed and said, never used, a bad one is never taken in") {
   Place place;
   const auto cache = place.open();
   const auto key = hash("key");
@@ -196,7 +196,7 @@ TEST_CASE("memory is bounded: the oldest is forgotten") {
   CHECK_FALSE(cache->accepted("38"));
 }
 
-TEST_CASE("a damaged index is forgotten, whatever byte it is; grids stay") {
+TEST_CASE("a damaged index is forgotten, whatever byte it is, grids stay") {
   Place place;
   place.files.put("/data/a.nc", "content");
   {

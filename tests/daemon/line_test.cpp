@@ -97,7 +97,7 @@ TEST_CASE("a port that is taken is said at once") {
   CHECK(started.error().message().find("Address already in use") != std::string::npos);
 }
 
-TEST_CASE("dropping a connection closes it with the reason; without one nothing happens") {
+TEST_CASE("dropping a connection closes it with the reason, without one nothing happens") {
   Wire wire{listening()};
   REQUIRE(wire.line->start());
   wire.line->drop("nobody is there");

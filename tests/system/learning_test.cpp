@@ -66,7 +66,7 @@ int said(const FlownMission& flown, const std::string& words) {
 
 TEST_CASE(
     "in a frame turned by 10 degrees the current that the daemon uses is right to 1 degree and 2 % at the third "
-    "surfacing, however it learns the frame; untreated it is wrong by all of it") {
+    "surfacing, however it learns the frame, untreated it is wrong by all of it") {
   struct Way {
     const char* what;
     simulator::Telling tells;

@@ -116,7 +116,7 @@ TEST_CASE("a configured rotation that the Waypoint: lines contradict is told onc
   CHECK(told == 1);
 }
 
-TEST_CASE("a frame of which nothing tells is said once, at the second surfacing; one that is configured is not") {
+TEST_CASE("a frame of which nothing tells is said once, at the second surfacing, one that is configured is not") {
   const auto said = [](const PilotDesk& desk) {
     int count = 0;
     for (const auto& effects : desk.effects)

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -175,8 +176,11 @@ struct Voyage {
                                   digits.substr(11, 2) + ":" + digits.substr(13, 2) + "Z");
     if (!at) return;
     const double done = std::chrono::duration<double>(*at - scenario.start).count() / 86400, all = *scenario.end.days;
-    std::cerr << done << " of " << all << " simulated days after " << wall_s << " s of wall time; about "
-              << wall_s * (all - done) / std::max(done, 1e-3) << " s to go" << std::endl;
+    std::ostringstream line;
+    line << std::fixed << std::setprecision(1) << done << " of " << all << " simulated days after "
+         << std::setprecision(0) << wall_s << " s of wall time; about " << wall_s * (all - done) / std::max(done, 1e-3)
+         << " s to go\n";
+    std::cerr << line.str() << std::flush;
   }
 
   [[nodiscard]] std::string path(const std::string& name) const { return (folder.path / name).string(); }

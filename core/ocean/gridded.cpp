@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/ocean/bilinear.hpp"
@@ -72,7 +73,9 @@ void GriddedField::find_fastest() {
       }
     }
   // Means of nodes are no faster than the fastest node; 2e-6 covers the rounding of the float kernel.
-  fastest_ = std::sqrt(squared) * (1 + 2e-6) * overshoot_bound(options_.interpolation, times_.step_ratio());
+  const auto how = options_.interpolation;
+  fastest_ = std::sqrt(squared) * (1 + 2e-6) * overshoot_bound(how, step_ratio(times_.times()));
+  if (levels() > 1) fastest_ *= overshoot_bound(how, step_ratio(depths_));
 }
 
 Coverage GriddedField::coverage() const {
@@ -199,6 +202,35 @@ GriddedField::Answer GriddedField::between_levels(const Place& place, std::size_
   return answer(blend(upper.east, lower.east), blend(upper.north, lower.north), upper.borrowed || lower.borrowed);
 }
 
+template <class At>
+GriddedField::Answer GriddedField::smooth(const std::vector<double>& axis, std::size_t k, double fraction,
+                                          const At& at) const {
+  const std::size_t from = k >= 2 ? k - 2 : 0, to = std::min(axis.size() - 1, k + 3);
+  std::array<double, 6> x{}, east{}, north{};
+  std::size_t count = 0, here = 0;
+  bool borrowed = false;
+  for (std::size_t n = from; n <= to; ++n) {
+    const auto value = at(n);
+    if (!value) {
+      // A neighbour without a value ends the axis there; the two around the place must have one.
+      if (n == k || n == k + 1) return value;
+      if (n > k) break;
+      count = 0;
+      borrowed = false;
+      continue;
+    }
+    if (n == k) here = count;
+    x[count] = axis[n];
+    east[count] = value->current.east.si();
+    north[count] = value->current.north.si();
+    borrowed = borrowed || value->extrapolated;
+    ++count;
+  }
+  const std::span<const double> known{x.data(), count};
+  return answer(interpolate(options_.interpolation, known, {east.data(), count}, here, fraction),
+                interpolate(options_.interpolation, known, {north.data(), count}, here, fraction), borrowed);
+}
+
 GriddedField::Answer GriddedField::at_time(const Place& place, double depth, std::size_t time) const {
   if (depths_.size() == 1 || depth <= depths_.front()) return between_levels(place, 0, 0, time);
   if (depth > depths_.back()) {
@@ -211,14 +243,17 @@ GriddedField::Answer GriddedField::at_time(const Place& place, double depth, std
   double fraction = (depth - depths_[level]) / (depths_[level + 1] - depths_[level]);
   if (options_.interpolation == Interpolation::nearest)
     return between_levels(place, fraction < 0.5 ? level : level + 1, 0, time);
-  return between_levels(place, level, fraction, time);
+  if (options_.interpolation == Interpolation::linear) return between_levels(place, level, fraction, time);
+  return smooth(depths_, level, fraction, [&](std::size_t k) { return between_levels(place, k, 0, time); });
 }
 
 GriddedField::Answer GriddedField::in_time(const Place& place, double depth, const TimeBracket& bracket) const {
   if (bracket.next == bracket.first) return at_time(place, depth, bracket.first);
   if (options_.interpolation == Interpolation::nearest)
     return at_time(place, depth, bracket.fraction < 0.5 ? bracket.first : bracket.next);
-  if (options_.interpolation != Interpolation::linear) return smooth_in_time(place, depth, bracket);
+  if (options_.interpolation != Interpolation::linear)
+    return smooth(times_.times(), bracket.first, bracket.fraction,
+                  [&](std::size_t k) { return at_time(place, depth, k); });
 
   if (depths_.size() == 1 && place.east == place.i + 1) {
     const std::size_t corner = place.j * row_stride_ + 2 * place.i;
@@ -237,36 +272,6 @@ GriddedField::Answer GriddedField::in_time(const Place& place, double depth, con
   };
   return answer(blend(before->current.east, behind->current.east), blend(before->current.north, behind->current.north),
                 before->extrapolated || behind->extrapolated);
-}
-
-GriddedField::Answer GriddedField::smooth_in_time(const Place& place, double depth, const TimeBracket& bracket) const {
-  const auto& times = times_.times();
-  const std::size_t from = bracket.first >= 2 ? bracket.first - 2 : 0;
-  const std::size_t to = std::min(times.size() - 1, bracket.next + 2);
-  std::array<double, 6> t{}, east{}, north{};
-  std::size_t count = 0, at = 0;
-  bool borrowed = false;
-  for (std::size_t k = from; k <= to; ++k) {
-    const auto value = at_time(place, depth, k);
-    if (!value) {
-      // A neighbour without a value ends the record there; the two bracketing times must have one.
-      if (k == bracket.first || k == bracket.next) return value;
-      if (k > bracket.next) break;
-      count = 0;
-      borrowed = false;
-      continue;
-    }
-    if (k == bracket.first) at = count;
-    t[count] = times[k];
-    east[count] = value->current.east.si();
-    north[count] = value->current.north.si();
-    borrowed = borrowed || value->extrapolated;
-    ++count;
-  }
-  const std::span<const double> known{t.data(), count};
-  return answer(interpolate_in_time(options_.interpolation, known, {east.data(), count}, at, bracket.fraction),
-                interpolate_in_time(options_.interpolation, known, {north.data(), count}, at, bracket.fraction),
-                borrowed);
 }
 
 GriddedField::Answer GriddedField::at(double lat, double lon, double depth, double t_s) const {

@@ -30,8 +30,9 @@ struct GriddedOptions {
 ///    near nodes the southern, then the western), marked extrapolated; else `no_data`. When the mask is land: `land`.
 ///  - A mean over a node that the grid itself has filled from its neighbours is marked extrapolated too.
 ///  - Outside the nodes: `outside_area`; the domain's edge is a wall. A grid around the globe has no edge in longitude.
-///  - In depth: linear between levels; above the first level the first; where a level has no water under water that the
-///    shallowest level has, `below_bottom`, also below the last level. A field without depths ignores the depth.
+///  - In depth: see Interpolation; above the first level the first; where a level has no water under water that the
+///    shallowest level has, `below_bottom`, also below the last level. A smooth curve ends at the last wet level, too.
+///    A field without depths ignores the depth.
 ///  - In time: see TimeAxis and Interpolation. A time at which the place has no value makes the answer that reason.
 ///
 /// `advance` is the kernel of product.md 10: all lanes in lockstep, four evaluations each, one bracket of time per
@@ -81,10 +82,12 @@ class GriddedField {
   [[nodiscard]] bool over_filled(const float* slice, const Place& place) const;
   [[nodiscard]] Spot wet_mean(const float* slice, const Place& place) const;
   [[nodiscard]] Spot borrow(const float* slice, const Place& place) const;
+  /// At `fraction` between nodes k and k + 1 of an axis (depths, times), through up to six answers around it.
+  template <class At>
+  [[nodiscard]] Answer smooth(const std::vector<double>& axis, std::size_t k, double fraction, const At& at) const;
   [[nodiscard]] Answer at_time(const Place& place, double depth, std::size_t time) const;
   [[nodiscard]] Answer between_levels(const Place& place, std::size_t level, double fraction, std::size_t time) const;
   [[nodiscard]] Answer in_time(const Place& place, double depth, const TimeBracket& bracket) const;
-  [[nodiscard]] Answer smooth_in_time(const Place& place, double depth, const TimeBracket& bracket) const;
   [[nodiscard]] Answer at(double lat, double lon, double depth, double t_s) const;
 
   std::shared_ptr<const void> keep_alive_;

@@ -99,7 +99,7 @@ Fields<Draft> schedule_fields() {
 Fields<Draft> planning_fields() {
   Fields<Draft> f;
   const std::vector<std::pair<std::string, std::string>> methods{
-      {"direct", "direct"}, {"cts-astar", "cts-astar"}, {"best", "best"}};
+      {"direct", "direct"}, {"cts-astar", "cts-astar"}, {"cts-astar-refined", "cts-astar-refined"}, {"best", "best"}};
   f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
          {"astar", "abs-cts-astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization",
           "iterative-optimization", "zermelo"});

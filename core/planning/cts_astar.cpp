@@ -6,6 +6,7 @@
 
 #include "core/planning/flight.hpp"
 #include "core/planning/path_keeping.hpp"
+#include "core/planning/purse.hpp"
 
 namespace glidehelm::planning {
 
@@ -32,35 +33,13 @@ std::string reason_for(const CtsSearch& found, const Problem& problem) {
   return text.empty() ? "no heading leads out of the reach of the start" : text;
 }
 
-/// The work of one answer, spent by several searches: a count says where the last one was cut.
-class Purse {
- public:
-  explicit Purse(const Budget& budget) : budget_{budget} {}
-  [[nodiscard]] Budget rest() const {
-    Budget rest = budget_;
-    rest.work -= std::min(rest.work, spent_.expansions);
-    return rest;
-  }
-  void take(const CtsSearch& found) {
-    if (found.cut_at != 0) cut_at_ = spent_.expansions + found.cut_at;
-    spent_ += found.statistics;
-  }
-  [[nodiscard]] const Statistics& spent() const { return spent_; }
-  [[nodiscard]] std::uint64_t cut_at() const { return cut_at_; }
-
- private:
-  const Budget& budget_;
-  Statistics spent_;
-  std::uint64_t cut_at_{};
-};
-
 bool arrives(const CtsSearch& found) { return !std::isnan(found.arrival_s); }
 
 /// The search at the problem's cell, and again with finer cells while that is cheap.
 CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse,
                         Metres allowance) {
   auto best = search(problem, ocean, chart, purse.rest(), {allowance, {}, 1e18});
-  purse.take(best);
+  purse.take(best.statistics, best.cut_at != 0);
   if (problem.cell.si() > 0) return best;
   bool finished = best.exhausted;
   Metres cell{best.cell_m};
@@ -68,7 +47,7 @@ CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const
     if (purse.spent().expansions >= CtsAStar::kCheapExpansions) break;
     cell = 0.5 * cell;
     auto finer = search(problem, ocean, chart, purse.rest(), {allowance, cell, arrives(best) ? best.arrival_s : 1e18});
-    purse.take(finer);
+    purse.take(finer.statistics, finer.cut_at != 0);
     finished = finer.exhausted;
     if (arrives(finer) || (!arrives(best) && finer.nearest_m < best.nearest_m)) best = std::move(finer);
   }
@@ -99,20 +78,24 @@ Attempt attempt(const Problem& problem, const ocean::Ocean& ocean, const chart::
 
 }  // namespace
 
+Metres allowance(const Problem& problem) {
+  const Metres way = problem.glider.horizontal_speed * problem.schedule.stint;
+  return (vehicle::usual_early_share(problem.glider.current_correction) + 0.005) * way;
+}
+
 Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                            const Budget& budget, const std::function<void(const Plan&)>& better) const {
   if (members.empty()) return unexpected(PlanFailure{NoPlan::no_forecast, "no forecast is given"});
   const auto& ocean = members.front();
   if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);
 
-  const Metres way = problem.glider.horizontal_speed * problem.schedule.stint;
-  const Metres allowance = (vehicle::usual_early_share(problem.glider.current_correction) + 0.005) * way;
   Purse purse{budget};
-  auto best = attempt(problem, ocean, chart, purse, allowance);
+  const Metres spare = allowance(problem);
+  auto best = attempt(problem, ocean, chart, purse, spare);
   // What the chart's margin stopped may be mended by another allowance.
   const bool mendable = best.grounded || (!best.plan.reaches_goal() && best.found.exhausted);
   if (mendable && best.found.stopped.margin && purse.cut_at() == 0) {
-    auto again = attempt(problem, ocean, chart, purse, best.grounded ? 3 * allowance : Metres{});
+    auto again = attempt(problem, ocean, chart, purse, best.grounded ? 3 * spare : Metres{});
     if (better_than(again.plan, best.plan)) best = std::move(again);
   }
   if (!best.plan.reaches_goal() && best.plan.stints.empty()) {

@@ -108,6 +108,9 @@ struct CtsSettings {
 /// One search at one cell size.
 CtsSearch search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
                  const CtsSettings& settings = {});
+/// Clearance beyond the margin that a way of held headings keeps, because its list's flight differs from it: the early share of a
+/// stint's way plus 0.5 % (chords).
+Metres allowance(const Problem& problem);
 /// The merging cell of a problem: the wanted one, else half a stint through still water.
 Metres cell_of(const Problem& problem);
 

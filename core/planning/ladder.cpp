@@ -2,37 +2,43 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/purse.hpp"
+#include "core/planning/refined_cts.hpp"
 
 namespace glidehelm::planning {
 
 Expected<Plan, PlanFailure> Ladder::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                          const Budget& budget, const std::function<void(const Plan&)>& better) const {
-  const DirectToGoal direct;
-  const CtsAStar cts;
-  const std::array<const Planner*, 2> stages{&direct, &cts};
+  Purse purse{budget};
+  std::vector<Plan> found;
   std::optional<Plan> best;
   std::optional<PlanFailure> failure;
-  Statistics total;
-  for (const auto* stage : stages) {
-    auto answer = stage->plan(problem, members, chart, budget, {});
+  const auto offer = [&](Plan plan) {
+    if (best && !better_than(plan, *best)) return;
+    best = std::move(plan);
+    if (better) better(*best);
+  };
+  const DirectToGoal direct;
+  const CtsAStar cts;
+  for (const Planner* stage : std::array<const Planner*, 2>{&direct, &cts}) {
+    auto answer = stage->plan(problem, members, chart, purse.rest(), {});
     if (!answer) {
       failure = answer.error();
       continue;
     }
-    total += answer->statistics;
-    if (best && !better_than(*answer, *best)) {
-      best->cut_at = answer->cut_at;
-      continue;
-    }
-    best = std::move(answer).value();
-    if (better) better(*best);
+    purse.take(answer->statistics, answer->cut_at != 0);
+    found.push_back(*answer);
+    offer(std::move(answer).value());
   }
   if (!best) return unexpected(*failure);
-  best->statistics = total;
+  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse));
+  best->statistics = purse.spent();
+  best->cut_at = purse.cut_at();
   if (better) better(*best);
   return *best;
 }

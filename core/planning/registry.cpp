@@ -3,14 +3,16 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/ladder.hpp"
+#include "core/planning/refined_cts.hpp"
 
 namespace glidehelm::planning {
 
-std::vector<std::string> method_names() { return {"direct", "cts-astar", "best"}; }
+std::vector<std::string> method_names() { return {"direct", "cts-astar", "cts-astar-refined", "best"}; }
 
 std::unique_ptr<const Planner> planner_named(std::string_view name) {
   if (name == "direct") return std::make_unique<DirectToGoal>();
   if (name == "cts-astar") return std::make_unique<CtsAStar>();
+  if (name == "cts-astar-refined") return std::make_unique<RefinedCts>();
   if (name == "best") return std::make_unique<Ladder>();
   return nullptr;
 }

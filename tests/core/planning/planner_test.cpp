@@ -5,13 +5,14 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/ladder.hpp"
+#include "core/planning/refined_cts.hpp"
 #include "tests/contract/planner_contract.hpp"
 
 using namespace glidehelm;
 using planning::NoPlan;
 
 TEMPLATE_TEST_CASE("every planner keeps the contract", "", planning::DirectToGoal, planning::CtsAStar,
-                   planning::Ladder) {
+                   planning::RefinedCts, planning::Ladder) {
   test::check_planner<TestType>();
 }
 

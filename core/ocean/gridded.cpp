@@ -78,6 +78,15 @@ void GriddedField::find_fastest() {
   if (levels() > 1) fastest_ *= overshoot_bound(how, step_ratio(depths_));
 }
 
+std::vector<bool> GriddedField::always_wet() const {
+  const std::size_t plane = lats_.size() * lons_.size();
+  std::vector<bool> wet(plane, true);
+  for (std::size_t t = 0; t < times_.times().size(); ++t)
+    for (std::size_t n = 0; n < plane; ++n)
+      if (std::isnan(slice(t, 0)[2 * n])) wet[n] = false;
+  return wet;
+}
+
 Coverage GriddedField::coverage() const {
   Coverage box;
   box.south = lats_.first();

@@ -54,6 +54,12 @@ class GriddedField {
   [[nodiscard]] Coverage coverage() const;
   [[nodiscard]] MetresPerSecond fastest() const { return MetresPerSecond{fastest_}; }
 
+  [[nodiscard]] const GridAxis& latitudes() const { return lats_; }
+  [[nodiscard]] const GridAxis& longitudes() const { return lons_; }
+  /// The last column neighbours the first.
+  [[nodiscard]] bool around_globe() const { return around_globe_; }
+  /// By node [latitude][longitude]: a value at the shallowest level at every time. One pass over that level.
+  [[nodiscard]] std::vector<bool> always_wet() const;
   [[nodiscard]] std::size_t levels() const { return depths_.size(); }
   [[nodiscard]] const GriddedOptions& options() const { return options_; }
 

@@ -98,11 +98,14 @@ Fields<Draft> schedule_fields() {
 
 Fields<Draft> planning_fields() {
   Fields<Draft> f;
-  const std::vector<std::pair<std::string, std::string>> methods{
-      {"direct", "direct"}, {"cts-astar", "cts-astar"}, {"cts-astar-refined", "cts-astar-refined"}, {"best", "best"}};
-  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
-         {"astar", "abs-cts-astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization",
-          "iterative-optimization", "zermelo"});
+  const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"},
+                                                                 {"cts-astar", "cts-astar"},
+                                                                 {"abs-cts-astar", "abs-cts-astar"},
+                                                                 {"cts-astar-refined", "cts-astar-refined"},
+                                                                 {"best", "best"}};
+  f.word(
+      {"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
+      {"astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization", "iterative-optimization", "zermelo"});
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");

@@ -37,8 +37,8 @@ bool arrives(const CtsSearch& found) { return !std::isnan(found.arrival_s); }
 
 /// The search at the problem's cell, and again with finer cells while that is cheap.
 CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse,
-                        Metres allowance) {
-  auto best = search(problem, ocean, chart, purse.rest(), {allowance, {}, 1e18});
+                        CtsSettings settings) {
+  auto best = search(problem, ocean, chart, purse.rest(), settings);
   purse.take(best.statistics, best.cut_at != 0);
   if (problem.cell.si() > 0) return best;
   bool finished = best.exhausted;
@@ -46,7 +46,9 @@ CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const
   for (int i = 0; i < CtsAStar::kMostHalvings && finished; ++i) {
     if (purse.spent().expansions >= CtsAStar::kCheapExpansions) break;
     cell = 0.5 * cell;
-    auto finer = search(problem, ocean, chart, purse.rest(), {allowance, cell, arrives(best) ? best.arrival_s : 1e18});
+    settings.cell = cell;
+    if (arrives(best)) settings.earlier_than_s = best.arrival_s;
+    auto finer = search(problem, ocean, chart, purse.rest(), settings);
     purse.take(finer.statistics, finer.cut_at != 0);
     finished = finer.exhausted;
     if (arrives(finer) || (!arrives(best) && finer.nearest_m < best.nearest_m)) best = std::move(finer);
@@ -61,16 +63,16 @@ struct Attempt {
   bool grounded{};  ///< the search arrives, its flight does not
 };
 
-Attempt attempt(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse,
-                Metres allowance) {
-  Attempt a{search_finely(problem, ocean, chart, purse, allowance), {}, false};
+Attempt attempt(const std::string& method, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
+                Purse& purse, const CtsSettings& settings) {
+  Attempt a{search_finely(problem, ocean, chart, purse, settings), {}, false};
   const bool reaches = arrives(a.found);
   // Without an arrival the flight ends with the last heading: steering on to the goal is what the search found impossible.
   const auto stints = static_cast<int>(a.found.headings.size());
   const double end = stints == 0 ? 0.0 : problem.schedule.surfacing_time(stints - 1).count();
   const double until_s = reaches ? problem.horizon_s : problem.start.fix_s + end + 1.0;  // a second: times round
   const auto flown = fly_path(a.found.headings, problem, ocean, chart, until_s);
-  a.plan = plan_from("cts-astar", flown, problem, {});
+  a.plan = plan_from(method, flown, problem, {});
   a.grounded = reaches && !a.plan.reaches_goal();
   if (!reaches && !a.plan.reaches_goal()) a.plan.reason = reason_for(a.found, problem);
   return a;
@@ -85,17 +87,27 @@ Metres allowance(const Problem& problem) {
 
 Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                            const Budget& budget, const std::function<void(const Plan&)>& better) const {
+  return plan_by_cts("cts-astar", HeadingSampling::uniform, problem, members, chart, budget, better);
+}
+
+Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& problem,
+                                        Members members, const chart::Chart& chart, const Budget& budget,
+                                        const std::function<void(const Plan&)>& better) {
   if (members.empty()) return unexpected(PlanFailure{NoPlan::no_forecast, "no forecast is given"});
   const auto& ocean = members.front();
   if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);
 
   Purse purse{budget};
   const Metres spare = allowance(problem);
-  auto best = attempt(problem, ocean, chart, purse, spare);
+  CtsSettings settings;
+  settings.allowance = spare;
+  settings.sampling = sampling;
+  auto best = attempt(method, problem, ocean, chart, purse, settings);
   // What the chart's margin stopped may be mended by another allowance.
   const bool mendable = best.grounded || (!best.plan.reaches_goal() && best.found.exhausted);
   if (mendable && best.found.stopped.margin && purse.cut_at() == 0) {
-    auto again = attempt(problem, ocean, chart, purse, best.grounded ? 3 * spare : Metres{});
+    settings.allowance = best.grounded ? 3 * spare : Metres{};
+    auto again = attempt(method, problem, ocean, chart, purse, settings);
     if (better_than(again.plan, best.plan)) best = std::move(again);
   }
   if (!best.plan.reaches_goal() && best.plan.stints.empty()) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/planning/heading_sampling.hpp"
 #include "core/planning/planner.hpp"
 
 namespace glidehelm::planning {
@@ -31,7 +32,8 @@ namespace glidehelm::planning {
 ///  - **Drift.** The surface interval before a stint is integrated once per expansion, for all M dives together.
 ///  - **Goal.** Looked for on the chord of every integration step, dives and drifts, also in repeated stints: arrival is
 ///    the crossing of the radius. The search ends when no open label can arrive before the best arrival found.
-///  - **Headings.** M uniform ones, the first of them the direction to the goal from each node (4.4.2).
+///  - **Headings.** M uniform ones, the first of them the direction to the goal from each node (4.4.2). `abs-cts-astar`
+///    draws them instead (abs_cts_astar.hpp).
 ///  - **Heuristic.** h(n) is the least time in which a vehicle covers the distance to the goal radius when it drifts with
 ///    |c|max of the surface field in the surface intervals and dives with U + |c|max of the dive field between them, on
 ///    this schedule. *Admissible*: from a surfacing on, any flight spends the same instants drifting and diving, its
@@ -81,6 +83,11 @@ class CtsAStar final : public Planner {
                                                  const std::function<void(const Plan&)>& better) const override;
 };
 
+/// What `CtsAStar::plan` does, for either way of sampling headings; `method` is the name that the plan gets.
+Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& problem,
+                                        Members members, const chart::Chart& chart, const Budget& budget,
+                                        const std::function<void(const Plan&)>& better);
+
 /// What the search itself found, before it is flown: for `CtsAStar::plan`, tests and benchmarks.
 struct CtsSearch {
   std::vector<Heading> headings;  ///< to the goal, or to the label nearest to it when it was not reached
@@ -104,6 +111,7 @@ struct CtsSettings {
   Metres allowance;             ///< clearance beyond the margin
   Metres cell;                  ///< 0: cell_of(problem)
   double earlier_than_s{1e18};  ///< epoch second: only earlier arrivals are of interest
+  HeadingSampling sampling{HeadingSampling::uniform};
 };
 /// One search at one cell size.
 CtsSearch search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/heading_sampling.hpp"
 #include "core/planning/search_grid.hpp"
 
 namespace glidehelm::planning {
@@ -22,7 +24,7 @@ struct Label {
   double f{};  ///< seconds from the fix
   std::int32_t parent{-1}, cell{-1};
   float margin{};           ///< clearance to keep from here
-  std::uint16_t heading{};  ///< index among M, counted from the parent's direction to the goal
+  std::uint16_t heading{};  ///< index among the M of its parent
   std::uint16_t stints{};   ///< flown so far
   std::uint8_t repeats{1};  ///< stints flown on this heading from the parent
   bool expanded{};
@@ -59,6 +61,8 @@ class Search {
                                  problem.glider.horizontal_speed)},
         count_{std::clamp(problem.headings, 1, Lanes::kMax)},
         best_arrival_{std::min(kNever, settings.earlier_than_s - problem.start.fix_s)} {
+    if (settings.sampling == HeadingSampling::adaptive)
+      adaptive_.emplace(problem.glider.horizontal_speed, problem.seed);
     for (int i = 0; i < count_; ++i) {
       const double turn = 2 * kPi * i / count_;
       turns_[static_cast<std::size_t>(i)] = {speed_ * std::sin(turn), speed_ * std::cos(turn)};
@@ -94,7 +98,7 @@ class Search {
     nearest_distance_ = least_distance(start.lat, start.lon);
     const double to_go = distance(problem_.start.fix, goal_.centre).si() - goal_.radius.si();
     hopeless_ = envelope_.least_time_from_fix(nearest_distance_ - goal_.radius.si(), problem_.schedule) > horizon_;
-    labels_.push_back(start);  // belongs to no cell: a stint may come back to where it began
+    add(start, false);  // belongs to no cell: a stint may come back to where it began
     heap_.push_back({0.0, 0});
     if (to_go <= 0) arrive(0, 0, -1, 0);
   }
@@ -127,7 +131,8 @@ class Search {
     r.headings = path_to(arrives ? best_parent_ : nearest_);
     if (arrives && best_heading_ >= 0)
       r.headings.insert(r.headings.end(), static_cast<std::size_t>(best_repeats_),
-                        heading_of(best_parent_, static_cast<std::uint16_t>(best_heading_)));
+                        adaptive_ ? Heading{Radians{best_drawn_}}
+                                  : heading_of(best_parent_, static_cast<std::uint16_t>(best_heading_)));
     r.statistics = statistics_;
     r.cut_at = cut_at_;
     r.exhausted = exhausted;
@@ -192,16 +197,10 @@ class Search {
     drift(label.stints, index, 0);
     if (lanes_.lost[0] != 0) return;
     const double lat = lanes_.lat[0], lon = lanes_.lon[0], margin = margins_[0], room = rooms_[0];
-    const auto to_goal = towards_goal(label.lat, label.lon);
-    const double per = to_goal.length() > 0 ? 1 / to_goal.length() : 0.0;
-    const double sin_b = per * to_goal.east, cos_b = per > 0 ? per * to_goal.north : 1.0;
-    for (int i = 0; i < count_; ++i) {  // line 3: uniform headings, the goal's direction first
-      const auto k = static_cast<std::size_t>(i);
-      set_lane(k, lat, lon, sin_b * turns_[k].cos + cos_b * turns_[k].sin,
-               cos_b * turns_[k].cos - sin_b * turns_[k].sin, margin);
-      rooms_[k] = room;
-      which_[k] = static_cast<std::uint16_t>(i);
-    }
+    if (adaptive_)
+      draw_headings(label.stints, lat, lon, margin, room);
+    else
+      spread_headings(towards_goal(label.lat, label.lon), lat, lon, margin, room);
     lanes_.count = count_;
     for (int repeat = 1;; ++repeat) {  // lines 5–9
       const int stint = label.stints + repeat - 1;
@@ -214,6 +213,33 @@ class Search {
       }
       drift(stint + 1, index, repeat);
       drop_lost();
+    }
+  }
+
+  /// Line 3, uniform: the goal's direction first. Lanes at the dive.
+  void spread_headings(Offset to_goal, double lat, double lon, double margin, double room) {
+    const double per = to_goal.length() > 0 ? 1 / to_goal.length() : 0.0;
+    const double sin_b = per * to_goal.east, cos_b = per > 0 ? per * to_goal.north : 1.0;
+    for (int i = 0; i < count_; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      set_lane(k, lat, lon, sin_b * turns_[k].cos + cos_b * turns_[k].sin,
+               cos_b * turns_[k].cos - sin_b * turns_[k].sin, margin);
+      rooms_[k] = room;
+      which_[k] = static_cast<std::uint16_t>(i);
+    }
+  }
+  /// Line 3, adaptive: for the current at the dive.
+  void draw_headings(int stint, double lat, double lon, double margin, double room) {
+    const auto to_goal = towards_goal(lat, lon);
+    const auto current = ocean_.dive.sample(GeoPoint::from_kernel(lat, lon), problem_.start.fix_s + dives(stint));
+    ++statistics_.current_evaluations;
+    adaptive_->draw(std::atan2(to_goal.east, to_goal.north), current ? current->current : Current{},
+                    statistics_.expansions, std::span{draw_}.first(static_cast<std::size_t>(count_)));
+    for (int i = 0; i < count_; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      set_lane(k, lat, lon, speed_ * std::sin(draw_[k]), speed_ * std::cos(draw_[k]), margin);
+      rooms_[k] = room;
+      which_[k] = static_cast<std::uint16_t>(i);
     }
   }
 
@@ -317,6 +343,7 @@ class Search {
     best_parent_ = parent;
     best_heading_ = heading;
     best_repeats_ = repeats;
+    if (heading >= 0) best_drawn_ = draw_[static_cast<std::size_t>(heading)];
   }
 
   void note_lost() {
@@ -389,10 +416,12 @@ class Search {
       if (other.stints == stints && other.f <= f) return;
       if (other.expanded || (best == nearest_ && d > nearest_distance_)) index = -1;
     }
-    if (index >= 0)
+    if (index >= 0) {
       labels_[static_cast<std::size_t>(index)] = label;  // nothing was reached from it yet
-    else
+      if (adaptive_) drawn_[static_cast<std::size_t>(index)] = draw_[label.heading];
+    } else {
       best = index = add(label, false);
+    }
     if (d < nearest_distance_) note_nearest(d, index);
     heap_.push_back({f, index});
     std::push_heap(heap_.begin(), heap_.end(), after);
@@ -400,6 +429,7 @@ class Search {
   std::int32_t add(const Label& label, bool expanded) {
     labels_.push_back(label);
     labels_.back().expanded = expanded;
+    if (adaptive_) drawn_.push_back(draw_[label.heading]);
     return static_cast<std::int32_t>(labels_.size()) - 1;
   }
   void note_nearest(double d, std::int32_t index) {
@@ -416,7 +446,9 @@ class Search {
     std::vector<Heading> headings;
     for (; index > 0; index = labels_[static_cast<std::size_t>(index)].parent) {
       const Label& label = labels_[static_cast<std::size_t>(index)];
-      headings.insert(headings.end(), label.repeats, heading_of(label.parent, label.heading));
+      headings.insert(headings.end(), label.repeats,
+                      adaptive_ ? Heading{Radians{drawn_[static_cast<std::size_t>(index)]}}
+                                : heading_of(label.parent, label.heading));
     }
     std::reverse(headings.begin(), headings.end());
     return headings;
@@ -446,6 +478,9 @@ class Search {
   std::vector<Label> labels_;
   std::vector<Open> heap_;
   std::array<Turn, Lanes::kMax> turns_{};
+  std::optional<AdaptiveHeadings> adaptive_;  ///< none: uniform headings
+  PerLane draw_{};                            ///< of the label that is expanded, radians; adaptive only
+  std::vector<double> drawn_;                 ///< the heading that led to each label; adaptive only
   Lanes lanes_{};
   PerLane lat_before_{}, lon_before_{};
   PerLane east_kept_{}, north_kept_{};
@@ -459,6 +494,7 @@ class Search {
   CtsSearch::Stopped stopped_;
   std::int32_t best_parent_{-1};
   int best_heading_{-1}, best_repeats_{};
+  double best_drawn_{};
   std::int32_t nearest_{};
   double nearest_distance_{};
 };

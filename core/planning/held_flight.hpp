@@ -8,7 +8,7 @@ namespace glidehelm::planning {
 
 /// What became of each lane of a held flight.
 struct HeldLanes {
-  ocean::Lanes at;  ///< where the lanes are; `lost` also holds kAground and kArrived
+  ocean::Lanes at;                                   ///< where the lanes are; `lost` also holds kAground and kArrived
   std::array<double, ocean::Lanes::kMax> arrival_s;  ///< epoch second of the entry into the goal's disc; kNever
   std::array<double, ocean::Lanes::kMax> toll;       ///< metres: what nearness to land has cost so far
 
@@ -32,7 +32,8 @@ class HeldFlight {
   /// Drifts before stint `k` and dives in it on each lane's own heading (`headings`, one for each lane), but not beyond
   /// `until_s` (epoch seconds). With `strict` a lane that enters the goal's disc, or runs aground, stays where its step
   /// ended; without, it flies on, and toll goes on growing inside the margin: so that differences stay smooth.
-  void fly(HeldLanes& lanes, int k, const std::array<double, ocean::Lanes::kMax>& headings, double until_s, bool strict);
+  void fly(HeldLanes& lanes, int k, const std::array<double, ocean::Lanes::kMax>& headings, double until_s,
+           bool strict);
 
   void set_buffer(Metres buffer) { buffer_ = buffer.si(); }
   void set_margin(Metres margin) { margin_ = margin.si(); }

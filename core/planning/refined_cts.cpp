@@ -43,8 +43,8 @@ class Polish {
   [[nodiscard]] CtsSearch search_variant(const Variant& variant) {
     Problem other = problem_;
     other.headings = static_cast<int>(std::lround(variant.headings * problem_.headings));
-    auto found = search(other, ocean_, chart_, purse_.rest(),
-                        {allowance(problem_), variant.cell * cell_of(problem_), 1e18});
+    auto found =
+        search(other, ocean_, chart_, purse_.rest(), {allowance(problem_), variant.cell * cell_of(problem_), 1e18});
     purse_.take(found.statistics, found.cut_at != 0);
     return found;
   }
@@ -81,8 +81,7 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
   for (const auto& variant : kVariants) {
     if (!best.reaches_goal() || purse.is_empty()) break;
     const auto found = polish.search_variant(variant);
-    if (!std::isnan(found.arrival_s))
-      offer(polish.polish(found.headings), "cts-astar-refined", problem.horizon_s);
+    if (!std::isnan(found.arrival_s)) offer(polish.polish(found.headings), "cts-astar-refined", problem.horizon_s);
   }
   return best;
 }

@@ -16,11 +16,11 @@ using Eigen::Matrix2d;
 using Eigen::Vector2d;
 using LaneValues = std::array<double, ocean::Lanes::kMax>;
 
-constexpr double kPlaceStep = 500.0;   // metres, largest step of differences
-constexpr double kLongestTurn = 0.5;   // radians in one round
+constexpr double kPlaceStep = 500.0;  // metres, largest step of differences
+constexpr double kLongestTurn = 0.5;  // radians in one round
 constexpr int kMostRounds = 100;
 constexpr int kMostDampings = 6, kMostIdle = 3;
-constexpr double kDampingUnit = 1e-5;   // 1/m, of curvature
+constexpr double kDampingUnit = 1e-5;  // 1/m, of curvature
 constexpr double kWorthwhile = 0.5;    // metres of a round
 
 /// A scalar with its first and second differences with respect to place (east, north, metres) and heading.
@@ -226,8 +226,8 @@ class Refinement {
                             slope[1] * link.north.by_places + link.toll.by_places;
       const Vector2d q_xu = a.transpose() * curve * b + slope[0] * link.east.by_place_turn +
                             slope[1] * link.north.by_place_turn + link.toll.by_place_turn;
-      const double q_uu = b.dot(curve * b) + slope[0] * link.east.by_turns + slope[1] * link.north.by_turns +
-                          link.toll.by_turns;
+      const double q_uu =
+          b.dot(curve * b) + slope[0] * link.east.by_turns + slope[1] * link.north.by_turns + link.toll.by_turns;
       const double scale = b.norm() * slope.norm();  // what straight water would give q_uu
       if (!(scale > 0)) {
         slope = q_x;
@@ -265,8 +265,7 @@ class Refinement {
         const auto& gain = i < 2 * n ? free_[k] : held_[k];
         const auto off = local_offset(links_[k].lat, links_[k].lon, lanes.at.lat[i], lanes.at.lon[i]);
         const double answer = i < n || i >= 2 * n ? gain.feedback.dot(Vector2d{off.east, off.north}) : 0.0;
-        headings[i] =
-            way_.headings[k] + kShares[i % n] * gain.turn + std::clamp(answer, -kLongestTurn, kLongestTurn);
+        headings[i] = way_.headings[k] + kShares[i % n] * gain.turn + std::clamp(answer, -kLongestTurn, kLongestTurn);
         if (lanes.flies(i)) flown[i].push_back(headings[i]);
       }
       headings[kAsItIs] = way_.headings[k];
@@ -347,7 +346,8 @@ std::vector<Heading> headings_of(const Plan& plan, const Problem& problem, const
       if (stint.arrives || i == 3) break;
       const auto off = local_offset(tried.at.lat[0], tried.at.lon[0], lat, lon);
       const double way = problem.glider.horizontal_speed.si() * (stint.surface_s - stint.dive_s);
-      heading += std::clamp((off.east * std::cos(heading) - off.north * std::sin(heading)) / std::max(1.0, way), -0.3, 0.3);
+      heading +=
+          std::clamp((off.east * std::cos(heading) - off.north * std::sin(heading)) / std::max(1.0, way), -0.3, 0.3);
     }
     headings.emplace_back(Radians{heading});
     lanes = tried;

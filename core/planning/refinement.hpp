@@ -10,12 +10,13 @@ namespace glidehelm::planning {
 /// A plan's headings after they were polished.
 struct Refined {
   std::vector<Heading> headings;
-  double arrival_s{};   ///< by the lanes' integration; NaN when the goal is not reached
-  double remaining_m{}; ///< distance to the goal's centre at the end when it is not
-  int rounds{};         ///< improvements that were made
+  double arrival_s{};    ///< by the lanes' integration; NaN when the goal is not reached
+  double remaining_m{};  ///< distance to the goal's centre at the end when it is not
+  int rounds{};          ///< improvements that were made
   Statistics statistics;
-  bool kept_margin{};   ///< false: the way itself comes nearer to land than `margin`, or leaves the field; nothing was done
-  bool cut{};           ///< the clock ended it
+  bool
+      kept_margin{};  ///< false: the way itself comes nearer to land than `margin`, or leaves the field; nothing was done
+  bool cut{};         ///< the clock ended it
 };
 
 /// Improves the headings of a plan until none of them can be turned to advantage: the nearest plan of constant-heading

@@ -50,8 +50,12 @@ ocean::GriddedField field_of(const SeaPlan& sea, Dice& dice) {
   const bool moves = sea.hours > 0;
   const double per_lon = kMetresPerDegree * std::cos(kMiddleLat * kPi / 180);
   ocean::GridAxes axes{
-      moves ? test::steps(kT0, 3600, static_cast<std::size_t>(sea.hours) + 1) : std::vector<double>{0.0}, {0.0}, {}, {},
-      moves, false};
+      moves ? test::steps(kT0, 3600, static_cast<std::size_t>(sea.hours) + 1) : std::vector<double>{0.0},
+      {0.0},
+      {},
+      {},
+      moves,
+      false};
   const int rows = static_cast<int>(std::ceil(sea.half_north / kMetresPerDegree * kCellsPerDegree)) + 20;
   const int columns = static_cast<int>(std::ceil(sea.half_east / per_lon * kCellsPerDegree)) + 20;
   for (int j = -rows; j <= rows; ++j) axes.lats_deg.push_back(kMiddleLat + j / kCellsPerDegree);
@@ -149,7 +153,8 @@ std::vector<Case> static_cases(MetresPerSecond speed, int count) {
     auto field = field_of(sea, dice);
     const double bearing = dice.between(0, 2 * kPi);
     const auto from = offset_from(geo_point(kMiddleLat, kMiddleLon), bearing + kPi, kLongWay / 2);
-    const auto to = offset_from(from, geodesic(from, geo_point(kMiddleLat, kMiddleLon)).departing.from_north().si(), kLongWay);
+    const auto to =
+        offset_from(from, geodesic(from, geo_point(kMiddleLat, kMiddleLon)).departing.from_north().si(), kLongWay);
     auto problem = problem_of(from, to, speed);
     problem.horizon_s = kT0 + planning::automatic_horizon(problem).count();
     const bool rocky = i % 2 == 1;
@@ -190,9 +195,7 @@ std::vector<Case> jet_cases() {
   spec.origin = origin;
   spec.length_scale = Metres{kUnit};
   spec.speed_scale = MetresPerSecond{kSpeed};
-  const auto at = [&](double x, double y) {
-    return offset_from(origin, std::atan2(x, y), std::hypot(x, y) * kUnit);
-  };
+  const auto at = [&](double x, double y) { return offset_from(origin, std::atan2(x, y), std::hypot(x, y) * kUnit); };
   ocean::Coverage box;
   const double half_lat = 6 * kUnit / LocalMetric::at(origin.lat.radians()).meridian_radius;
   const double unit_lon = kUnit / LocalMetric::at(origin.lat.radians()).parallel_radius;
@@ -200,8 +203,8 @@ std::vector<Case> jet_cases() {
   box.north = origin.lat.radians() + half_lat;
   box.west = origin.lon.radians() - unit_lon;
   box.east = origin.lon.radians() + 13 * unit_lon;
-  const auto field = ocean::AnalyticField::make(
-      spec, Instant{std::chrono::milliseconds{static_cast<std::int64_t>(kT0 * 1000)}}, box);
+  const auto field =
+      ocean::AnalyticField::make(spec, Instant{std::chrono::milliseconds{static_cast<std::int64_t>(kT0 * 1000)}}, box);
   std::vector<Case> cases;
   for (const double y : {-3.0, -1.5, 0.0, 1.5, 3.0}) {
     auto problem = problem_of(at(0, y), at(10, 0), MetresPerSecond{0.5 * kSpeed});

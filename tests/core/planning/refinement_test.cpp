@@ -81,7 +81,8 @@ TEST_CASE("in still water a crooked way becomes the straight one") {
 TEST_CASE("in a uniform current the refined way is Zermelo's straight one") {
   const test::Uniform current{0.08, -0.12};
   const ocean::Ocean ocean{current, current};
-  const auto from = geo_point(0.0, 10.0);  // at the equator a uniform current is uniform in the plane to 1e-4 over 60 km
+  const auto from =
+      geo_point(0.0, 10.0);  // at the equator a uniform current is uniform in the plane to 1e-4 over 60 km
   auto problem = test::problem_between(from, destination(from, Bearing{degrees(30)}, Metres{60e3}));
   std::vector<Heading> crooked;
   for (int k = 0; k < 14; ++k) crooked.push_back(turned(Heading{degrees(30)}, k % 2 == 0 ? 35 : -35));
@@ -150,7 +151,8 @@ TEST_CASE("refined plans are no later than every sequence on twenty-four heading
     const auto refined = planning::refine(found.headings, sea.problem, ocean, chart::Chart{}, Metres{0}, {});
     const double time = refined.arrival_s - test::kT0;
     const double exhaustive = test::Exhaustive{sea.problem, sea.field, 24, 6, time * 1.001}.travel_time();
-    INFO(sea.name << ": searched " << found.arrival_s - test::kT0 << " refined " << time << " exhaustive " << exhaustive);
+    INFO(sea.name << ": searched " << found.arrival_s - test::kT0 << " refined " << time << " exhaustive "
+                  << exhaustive);
     // The exhaustive search may lie in another valley by a little and integrates with 20 min midpoint steps (1e-4).
     CHECK(time <= exhaustive * 1.0005);
     CHECK(time <= found.arrival_s - test::kT0 + 5);
@@ -164,7 +166,8 @@ TEST_CASE("round an island the way is as short as a string, and keeps the margin
   constexpr double kRadius = 15e3, kMargin = 2000;
   const auto centre = destination(from, Bearing{degrees(90)}, Metres{80e3});
   chart::Area island{"island", {}};
-  for (int i = 0; i < 90; ++i) island.vertices.push_back(destination(centre, Bearing{degrees(4.0 * i)}, Metres{kRadius}));
+  for (int i = 0; i < 90; ++i)
+    island.vertices.push_back(destination(centre, Bearing{degrees(4.0 * i)}, Metres{kRadius}));
   const chart::Chart chart{{nullptr, {}, {island}}};
   auto problem = test::problem_between(from, to, 1000);
   problem.coast_margin = Metres{kMargin};

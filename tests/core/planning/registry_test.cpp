@@ -5,7 +5,8 @@
 using namespace glidehelm;
 
 TEST_CASE("every name of the list makes a planner that answers to it, and no other name does") {
-  CHECK(planning::method_names() == std::vector<std::string>{"direct", "cts-astar", "cts-astar-refined", "best"});
+  CHECK(planning::method_names() ==
+        std::vector<std::string>{"direct", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"});
   for (const auto& name : planning::method_names()) {
     const auto planner = planning::planner_named(name);
     REQUIRE(planner);

@@ -66,6 +66,14 @@ struct Attempt {
 Attempt attempt(const std::string& method, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
                 Purse& purse, const CtsSettings& settings) {
   Attempt a{search_finely(problem, ocean, chart, purse, settings), {}, false};
+  if (!arrives(a.found) && a.found.exhausted && a.found.stopped.horizon) {
+    CtsSettings farther = settings;
+    farther.cell = Metres{a.found.cell_m};
+    farther.nearest = true;
+    auto nearer = search(problem, ocean, chart, purse.rest(), farther);
+    purse.take(nearer.statistics, nearer.cut_at != 0);
+    if (nearer.nearest_m < a.found.nearest_m) a.found = std::move(nearer);
+  }
   const bool reaches = arrives(a.found);
   // Without an arrival the flight ends with the last heading: steering on to the goal is what the search found impossible.
   const auto stints = static_cast<int>(a.found.headings.size());

@@ -58,7 +58,8 @@ namespace glidehelm::planning {
 ///
 /// When the goal is not reached the plan is a closest approach: the way to the label nearest to the goal, and the reason
 /// names what stopped the search: the horizon, the end of the forecast, or walls. Labels from which the goal cannot be
-/// reached in time are not expanded, unless that is true of the start already.
+/// reached in time are not expanded, unless that is true of the start already; when the goal turns out not to be reached within
+/// the horizon, the search is done once more with them, for the nearest of all.
 ///
 /// Complexity: at most one expansion per cell and re-opening; each costs M·4·steps current evaluations. No allocation, no
 /// virtual call and no text per expansion beyond the growth of two vectors; one indirect call per integration step of all
@@ -112,6 +113,8 @@ struct CtsSettings {
   Metres cell;                  ///< 0: cell_of(problem)
   double earlier_than_s{1e18};  ///< epoch second: only earlier arrivals are of interest
   HeadingSampling sampling{HeadingSampling::uniform};
+  /// As near to the goal as can be: labels from which it cannot be reached in time are expanded as well.
+  bool nearest{};
 };
 /// One search at one cell size.
 CtsSearch search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,

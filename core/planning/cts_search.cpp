@@ -60,7 +60,8 @@ class Search {
         step_{vehicle::lane_step(ocean, problem.start.fix, goal_.centre, problem.start.fix_s, stint_,
                                  problem.glider.horizontal_speed)},
         count_{std::clamp(problem.headings, 1, Lanes::kMax)},
-        best_arrival_{std::min(kNever, settings.earlier_than_s - problem.start.fix_s)} {
+        best_arrival_{std::min(kNever, settings.earlier_than_s - problem.start.fix_s)},
+        hopeless_{settings.nearest} {
     if (settings.sampling == HeadingSampling::adaptive)
       adaptive_.emplace(problem.glider.horizontal_speed, problem.seed);
     for (int i = 0; i < count_; ++i) {
@@ -97,7 +98,8 @@ class Search {
     start.margin = static_cast<float>(margin_in_force(start.lat, start.lon) - kSlack);
     nearest_distance_ = least_distance(start.lat, start.lon);
     const double to_go = distance(problem_.start.fix, goal_.centre).si() - goal_.radius.si();
-    hopeless_ = envelope_.least_time_from_fix(nearest_distance_ - goal_.radius.si(), problem_.schedule) > horizon_;
+    hopeless_ =
+        hopeless_ || envelope_.least_time_from_fix(nearest_distance_ - goal_.radius.si(), problem_.schedule) > horizon_;
     add(start, false);  // belongs to no cell: a stint may come back to where it began
     heap_.push_back({0.0, 0});
     if (to_go <= 0) arrive(0, 0, -1, 0);
@@ -475,6 +477,7 @@ class Search {
   double step_;
   int count_;
   double best_arrival_;  ///< seconds from the fix
+  bool hopeless_;        ///< not even the bound reaches the goal from the start, or the nearest position is asked for
   std::vector<Label> labels_;
   std::vector<Open> heap_;
   std::array<Turn, Lanes::kMax> turns_{};
@@ -488,7 +491,6 @@ class Search {
   PerLane rooms_{};    ///< lower bound of the clearance that it has
   std::array<std::uint16_t, Lanes::kMax> which_{};
   double parent_distance_{};
-  bool hopeless_{};  ///< not even the bound reaches the goal from the start
   Statistics statistics_;
   std::uint64_t cut_at_{};
   CtsSearch::Stopped stopped_;

@@ -1,5 +1,6 @@
 #include "tests/bench/case_suite.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -89,7 +90,7 @@ chart::Area island(GeoPoint centre, double radius, int number) {
   return area;
 }
 
-/// Islands between start and goal, the first on the straight way; none within 40 km of either end.
+/// Islands between start and goal, the first on the straight way; none within 15 % of the way, or 40 km, of either end.
 std::vector<chart::Area> islands_between(GeoPoint from, GeoPoint to, int count, double least, double largest,
                                          Dice& dice) {
   const auto way = geodesic(from, to);
@@ -101,7 +102,8 @@ std::vector<chart::Area> islands_between(GeoPoint from, GeoPoint to, int count, 
     const double along = dice.between(first ? 0.35 : 0.0, first ? 0.65 : 1.0) * length;
     const double across = first ? dice.between(-0.3, 0.3) * radius : dice.between(-0.3, 0.3) * length;
     const auto centre = offset_from(offset_from(from, bearing, along), bearing + kPi / 2, across);
-    if (distance(centre, from).si() < radius + 40e3 || distance(centre, to).si() < radius + 40e3) continue;
+    const double room = radius + std::min(40e3, 0.15 * length);
+    if (distance(centre, from).si() < room || distance(centre, to).si() < room) continue;
     all.push_back(island(centre, radius, static_cast<int>(all.size()) + 1));
   }
   return all;

@@ -1,0 +1,215 @@
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/planning/cts_astar.hpp"
+#include "core/planning/flight.hpp"
+#include "core/planning/refinement.hpp"
+#include "core/planning/registry.hpp"
+#include "tests/bench/case_suite.hpp"
+#include "tests/support/random_sea.hpp"
+
+// Every method on every case of the suite, in the form of the Thesis's tables 5.5, 5.6, 5.8 to 5.11, 5.13 and 5.14, and how far each is
+// from the best plan of constant-heading stints that many searches, each refined, have found.
+//
+//   suite [CASES [STARTS]]     cases of each kind (default: all), searches behind the best known plan (default 12)
+
+using namespace glidehelm;
+
+namespace {
+
+struct Answer {
+  bool arrives{};
+  double travel_s{}, remaining_m{}, wall_s{};
+  planning::Statistics statistics;
+};
+
+/// One kind of case: its answers by method, in the order of the cases.
+struct Sheet {
+  std::string title;
+  std::vector<suite::Case> cases;
+  std::map<std::string, std::vector<Answer>> answers;
+  std::vector<double> best_known;  ///< seconds; NaN where nothing arrives
+};
+
+Answer ask(const suite::Case& c, const std::string& method) {
+  const std::array<ocean::Ocean, 1> members{c.ocean()};
+  const auto begin = std::chrono::steady_clock::now();
+  const auto plan = planning::planner_named(method)->plan(c.problem, members, c.chart(), {}, {});
+  Answer a;
+  a.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  a.remaining_m = distance(c.problem.start.fix, planning::disc_of(c.problem).centre).si();
+  if (!plan) return a;
+  a.arrives = plan->reaches_goal();
+  a.travel_s = plan->arrival_s - c.problem.start.fix_s;
+  a.remaining_m = plan->remaining.si();
+  a.statistics = plan->statistics;
+  return a;
+}
+
+/// The earliest arrival that refinement finds from `starts` ways: searches with cells from a third of a stint to one and a half and
+/// with 12 to 40 headings, each way besides turned at random by up to 30° a stint.
+double best_known(const suite::Case& c, int starts) {
+  test::Dice dice{0xC0FFEEULL};
+  const auto ocean = c.ocean();
+  double best = std::nan("");
+  const auto polish = [&](const std::vector<Heading>& headings) {
+    const auto refined = planning::refine(headings, c.problem, ocean, c.chart(), c.problem.coast_margin, {});
+    if (!std::isnan(refined.arrival_s) && !(refined.arrival_s >= best)) best = refined.arrival_s;
+  };
+  for (int i = 0; i < starts; ++i) {
+    auto problem = c.problem;
+    problem.headings = static_cast<int>(std::lround(dice.between(12, 40)));
+    const auto cell = dice.between(0.6, 3.0) * planning::cell_of(problem);
+    const auto found = planning::search(problem, ocean, c.chart(), {}, {planning::allowance(problem), cell, 1e18});
+    if (std::isnan(found.arrival_s)) continue;
+    polish(found.headings);
+    auto shaken = found.headings;
+    for (auto& h : shaken) h = h + Radians{dice.between(-kPi / 6, kPi / 6)};
+    polish(shaken);
+  }
+  return best - c.problem.start.fix_s;
+}
+
+std::string days(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%d d %4.1f h", static_cast<int>(seconds / 86400), std::fmod(seconds, 86400) / 3600);
+  return text;
+}
+
+struct Mean {
+  double sum{}, squares{};
+  int n{};
+  void add(double x) {
+    sum += x;
+    squares += x * x;
+    ++n;
+  }
+  [[nodiscard]] double mean() const { return n > 0 ? sum / n : std::nan(""); }
+  [[nodiscard]] double deviation() const {
+    return n > 1 ? std::sqrt(std::max(0.0, (squares - sum * sum / n) / (n - 1))) : 0;
+  }
+};
+
+double way_of(const suite::Case& c) { return distance(c.problem.start.fix, planning::disc_of(c.problem).centre).si(); }
+
+/// Travel times where every method arrives that arrives anywhere in half the cases: a mean over different cases would compare nothing.
+void print_arrivals(const Sheet& sheet) {
+  const auto n = sheet.cases.size();
+  std::vector<bool> common(n, true);
+  for (const auto& [method, answers] : sheet.answers) {
+    const auto arrivals = std::count_if(answers.begin(), answers.end(), [](const Answer& a) { return a.arrives; });
+    if (2 * static_cast<std::size_t>(arrivals) < n) continue;
+    for (std::size_t i = 0; i < n; ++i) common[i] = common[i] && answers[i].arrives;
+  }
+  std::printf("\n%s: %zu cases; travel times and speeds over the %td in which the methods that mostly arrive all do\n",
+              sheet.title.c_str(), n, std::count(common.begin(), common.end(), true));
+  std::printf("  %-20s %6s %14s %18s %22s %10s %12s %12s\n", "method", "NA", "travel time", "km/day (sd)",
+              "above best known, max", "wall s", "expansions", "evaluations");
+  std::vector<std::pair<double, std::string>> rows;
+  for (const auto& [method, answers] : sheet.answers) {
+    Mean time, speed, gap, wall, expansions, evaluations;
+    double worst = 0;
+    int missing = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& a = answers[i];
+      wall.add(a.wall_s);
+      expansions.add(static_cast<double>(a.statistics.expansions));
+      evaluations.add(static_cast<double>(a.statistics.current_evaluations));
+      if (!a.arrives) {
+        ++missing;
+        continue;
+      }
+      if (!std::isnan(sheet.best_known[i])) {
+        gap.add(a.travel_s / sheet.best_known[i] - 1);
+        worst = std::max(worst, a.travel_s / sheet.best_known[i] - 1);
+      }
+      if (!common[i]) continue;
+      time.add(a.travel_s);
+      speed.add(way_of(sheet.cases[i]) / 1000 / (a.travel_s / 86400));
+    }
+    char line[256];
+    std::snprintf(line, sizeof line, "  %-20s %4.0f %% %14s %9.2f (%5.2f) %12.3f %% %6.2f %% %10.3f %12.0f %12.3g\n",
+                  method.c_str(), 100.0 * missing / static_cast<double>(n),
+                  time.n > 0 ? days(time.mean()).c_str() : "-", speed.mean(), speed.deviation(), 100 * gap.mean(),
+                  100 * worst, wall.mean(), expansions.mean(), evaluations.mean());
+    rows.emplace_back(missing * 1e9 + time.mean(), line);
+  }
+  std::sort(rows.begin(), rows.end());
+  for (const auto& row : rows) std::fputs(row.second.c_str(), stdout);
+}
+
+/// Distances left at the horizon, less those of the reference method.
+void print_distances(const Sheet& sheet, const std::string& reference) {
+  std::printf("\n%s: %zu cases, distance left at the horizon less that of %s, km: positive is worse\n",
+              sheet.title.c_str(), sheet.cases.size(), reference.c_str());
+  std::printf("  %-20s %20s %20s %10s\n", "method", "offshore (sd)", "among islands (sd)", "wall s");
+  const auto& base = sheet.answers.at(reference);
+  for (const auto& [method, answers] : sheet.answers) {
+    Mean open, coast, wall;
+    for (std::size_t i = 0; i < answers.size(); ++i) {
+      (sheet.cases[i].has_islands() ? coast : open).add((answers[i].remaining_m - base[i].remaining_m) / 1000);
+      wall.add(answers[i].wall_s);
+    }
+    std::printf("  %-20s %11.2f (%6.2f) %11.2f (%6.2f) %10.3f\n", method.c_str(), open.mean(), open.deviation(),
+                coast.mean(), coast.deviation(), wall.mean());
+  }
+}
+
+void fill(Sheet& sheet, int starts) {
+  for (std::size_t i = 0; i < sheet.cases.size(); ++i) {
+    std::fprintf(stderr, "%s %zu/%zu\n", sheet.title.c_str(), i + 1, sheet.cases.size());
+    const auto& c = sheet.cases[i];
+    for (const auto& method : planning::method_names()) sheet.answers[method].push_back(ask(c, method));
+    sheet.best_known.push_back(starts > 0 ? best_known(c, starts) : std::nan(""));
+  }
+  std::fprintf(stderr, "\n");
+}
+
+void print_cases(const Sheet& sheet) {
+  std::printf("\n%-26s %10s", sheet.title.c_str(), "best known");
+  for (const auto& [method, answers] : sheet.answers) std::printf(" %18s", method.c_str());
+  std::printf("   hours, and above the best known\n");
+  for (std::size_t i = 0; i < sheet.cases.size(); ++i) {
+    std::printf("%-26s %8.2f h", sheet.cases[i].name.c_str(), sheet.best_known[i] / 3600);
+    for (const auto& [method, answers] : sheet.answers) {
+      const auto& a = answers[i];
+      if (a.arrives)
+        std::printf(" %8.2f %+7.3f %%", a.travel_s / 3600, 100 * (a.travel_s / sheet.best_known[i] - 1));
+      else
+        std::printf(" %18s", "-");
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
+  const int starts = argc > 2 ? std::atoi(argv[2]) : 12;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  for (const double speed : {0.4, 0.2}) {
+    char title[64];
+    std::snprintf(title, sizeof title, "static 650 km, U = %.1f m/s", speed);
+    Sheet still{title, suite::static_cases(MetresPerSecond{speed}, std::min(count, 20)), {}, {}};
+    fill(still, starts);
+    print_cases(still);
+    print_arrivals(still);
+    std::snprintf(title, sizeof title, "dynamic 3-4 days, U = %.1f m/s", speed);
+    Sheet moving{title, suite::dynamic_cases(MetresPerSecond{speed}, std::min(count, 45)), {}, {}};
+    fill(moving, 0);
+    print_distances(moving, "best");
+  }
+  Sheet jet{"jet", suite::jet_cases(), {}, {}};
+  fill(jet, starts);
+  print_cases(jet);
+  print_arrivals(jet);
+}

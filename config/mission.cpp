@@ -96,16 +96,31 @@ Fields<Draft> schedule_fields() {
   return f;
 }
 
+Fields<planning::LatticeChoice> lattice_fields() {
+  using planning::GridKind;
+  using planning::LatticeChoice;
+  Fields<LatticeChoice> f;
+  f.whole({"neighbours", "8, 16 or 24 neighbours of a node (on triangles 6, 12 or 18)"}, &LatticeChoice::neighbours,
+          from_to(8, 24));
+  f.whole({"radius", "rings of neighbours of neighbours, as far as they lie in new directions"}, &LatticeChoice::radius,
+          from_to(1, 4));
+  f.word({"grid", "`regular` in latitude and longitude; `irregular`: finer beside start and goal; `triangular`"},
+         &LatticeChoice::grid,
+         std::vector<std::pair<std::string, GridKind>>{
+             {"regular", GridKind::regular}, {"irregular", GridKind::irregular}, {"triangular", GridKind::triangular}});
+  return f;
+}
+
 Fields<Draft> planning_fields() {
   Fields<Draft> f;
   const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"},
+                                                                 {"astar", "astar"},
                                                                  {"cts-astar", "cts-astar"},
                                                                  {"abs-cts-astar", "abs-cts-astar"},
                                                                  {"cts-astar-refined", "cts-astar-refined"},
                                                                  {"best", "best"}};
-  f.word(
-      {"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
-      {"astar", "tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization", "iterative-optimization", "zermelo"});
+  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
+         {"tve", "astar-tve", "ztve", "zastar-tve", "rrt", "optimization", "iterative-optimization", "zermelo"});
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");
@@ -113,6 +128,7 @@ Fields<Draft> planning_fields() {
   f.maybe_number(
       {"horizon_h", "longest travel time looked at; `auto`: three times that through still water, at least 12 stints"},
       &Draft::horizon, kHour, above(0, 8784), "auto");
+  f.part({"astar", "the nodes that `astar` goes over; their spacing is `cell_km`"}, &Draft::lattice, lattice_fields());
   f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
   return f;
 }
@@ -235,6 +251,12 @@ void check_schedule(const Draft& d, Reading& reading) {
                      {}, "a stint of " + from_to(kShortestStint_h, kLongestStint_h).text() + " h");
 }
 
+void check_planning(const Draft& d, Reading& reading) {
+  if (d.lattice.neighbours % 8 != 0)
+    reading.complain("planning.astar.neighbours", "no neighbourhood", std::to_string(d.lattice.neighbours),
+                     "8, 16 or 24");
+}
+
 void check_safety(const Draft& d, Reading& reading) {
   if (d.min_water_depth)
     reading.complain("safety.min_water_depth_m",
@@ -279,6 +301,7 @@ Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_vi
       check_positions(draft, reading);
       check_vehicle(draft, reading);
       check_schedule(draft, reading);
+      check_planning(draft, reading);
       check_safety(draft, reading);
       load_areas(draft.inside, load, "safety.keep_in", reading);
       load_areas(draft.outside, load, "safety.keep_out", reading);

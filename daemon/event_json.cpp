@@ -48,11 +48,17 @@ template <class F>
 void members(Departure& d, F&& f) {
   f("fix", d.fix), f("fix_s", d.fix_s);
 }
+inline nlohmann::json write(GridKind k) { return static_cast<int>(k); }
+inline void read(const nlohmann::json& j, GridKind& k) { values::read_enum(j, k, GridKind::triangular); }
+template <class F>
+void members(LatticeChoice& l, F&& f) {
+  f("neighbours", l.neighbours), f("radius", l.radius), f("grid", l.grid);
+}
 template <class F>
 void members(Problem& p, F&& f) {
   f("start", p.start), f("goal", std::get<PointGoal>(p.goal)), f("glider", p.glider), f("schedule", p.schedule);
   f("believed_current", p.believed_current), f("horizon_s", p.horizon_s), f("coast_margin_m", p.coast_margin);
-  f("headings", p.headings), f("cell_m", p.cell), f("seed", p.seed);
+  f("headings", p.headings), f("cell_m", p.cell), f("seed", p.seed), f("lattice", p.lattice);
 }
 }  // namespace glidehelm::planning
 

@@ -365,6 +365,7 @@ planning::Problem Pilot::problem_now() const {
   p.headings = m.headings;
   p.cell = m.cell.value_or(Metres{0});
   p.seed = m.seed;
+  p.lattice = m.lattice;
   return p;
 }
 

@@ -16,6 +16,7 @@
 #include "core/model/dive_schedule.hpp"
 #include "core/model/glider.hpp"
 #include "core/ocean/field.hpp"
+#include "core/planning/lattice_choice.hpp"
 #include "core/vehicle/motion.hpp"
 
 /// The seam between a planner and its caller.
@@ -54,6 +55,7 @@ struct Problem {
   int headings{18};           ///< M
   Metres cell{};              ///< merging cell of the search; 0 = half a stint through still water
   std::uint64_t seed{1};
+  LatticeChoice lattice;  ///< of astar
   friend bool operator==(const Problem&, const Problem&) = default;
 };
 

@@ -1,6 +1,7 @@
 #include "core/planning/registry.hpp"
 
 #include "core/planning/abs_cts_astar.hpp"
+#include "core/planning/astar.hpp"
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/ladder.hpp"
@@ -9,11 +10,12 @@
 namespace glidehelm::planning {
 
 std::vector<std::string> method_names() {
-  return {"direct", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"};
+  return {"direct", "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"};
 }
 
 std::unique_ptr<const Planner> planner_named(std::string_view name) {
   if (name == "direct") return std::make_unique<DirectToGoal>();
+  if (name == "astar") return std::make_unique<AStar>();
   if (name == "cts-astar") return std::make_unique<CtsAStar>();
   if (name == "abs-cts-astar") return std::make_unique<AbsCtsAStar>();
   if (name == "cts-astar-refined") return std::make_unique<RefinedCts>();

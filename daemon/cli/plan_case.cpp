@@ -98,6 +98,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.problem.headings = m.headings;
   r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
   r.problem.seed = options.seed.value_or(m.seed);
+  r.problem.lattice = m.lattice;
   r.method = m.method;
   r.slot = m.slot;
   r.max_waypoints = m.max_waypoints;

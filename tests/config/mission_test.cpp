@@ -75,7 +75,7 @@ start: {lat_deg: -30, lon_deg: -179.5, time: 2026-11-25T06:00Z}
 vehicle: {horizontal_speed_m_per_s: 0.25, glide_angle_deg: 20, dive_depth_m: 900, climb_to_m: 5, current_correction: 0, local_frame_rotation_deg: -3.5}
 schedule: {stint_h: 8, surface_min: 20, first_stint_h: 2}
 currents: {files: [a.nc, b/*.nc], outside_time: cycle, interpolation: akima, variables: {east: uo, north: vo}, time_epoch: 2000-01-01}
-planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7}
+planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, astar: {neighbours: 24, radius: 2, grid: triangular}}
 safety: {coast: c.coast, min_distance_to_coast_m: 0, depth_margin_m: 30, max_wpt_distance_m: 50000,
          keep_in: [[{lat_deg: -31, lon_deg: 178}, {lat_deg: -31, lon_deg: -178}, {lat_deg: -28, lon_deg: 180}]], keep_out: []}
 list: {slot: 0, max_waypoints: 1, radius_m: 150, at_end: wait}
@@ -109,6 +109,7 @@ after_goal: next leg-4
   CHECK(m.budget == Seconds{5});
   CHECK(m.horizon == Seconds{240 * 3600});
   CHECK(m.seed == 7);
+  CHECK(m.lattice == planning::LatticeChoice{24, 2, planning::GridKind::triangular});
   CHECK(m.coast_file == "c.coast");
   CHECK(m.min_distance_to_coast == Metres{0});
   CHECK(m.depth_margin == Metres{30});
@@ -185,20 +186,25 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
       {"schedule: {half_cycles: 900}\n",
        {"7:25 schedule.half_cycles: gives a stint of 307.62 h; allowed: a stint of 0.1 to 72 h"}},
       {"planning: {method: tve}\n",
-       {"7:20 planning.method: not available in this version; available: direct, cts-astar, abs-cts-astar, "
+       {"7:20 planning.method: not available in this version; available: direct, astar, cts-astar, abs-cts-astar, "
         "cts-astar-refined, best; "
         "found tve"}},
       {"planning: {method: rtr}\n",
-       {"7:20 planning.method: not one of the words; found rtr; allowed: direct, cts-astar, abs-cts-astar, "
+       {"7:20 planning.method: not one of the words; found rtr; allowed: direct, astar, cts-astar, abs-cts-astar, "
         "cts-astar-refined, best"}},
       {"planning: {method: cts_astar}\n",
-       {"7:20 planning.method: not one of the words; found cts_astar; allowed: direct, cts-astar, abs-cts-astar, "
+       {"7:20 planning.method: not one of the words; found cts_astar; allowed: direct, astar, cts-astar, "
+        "abs-cts-astar, "
         "cts-astar-refined, "
         "best; did you mean "
         "cts-astar?"}},
       {"planning: {headings: 73}\n", {"7:22 planning.headings: out of range; found 73; allowed: 4 to 72"}},
       {"planning: {cell_km: atuo}\n",
        {"7:21 planning.cell_km: not one of the words; found atuo; allowed: auto, a number; did you mean auto?"}},
+      {"planning: {astar: {neighbours: 12}}\n",
+       {"7:32 planning.astar.neighbours: no neighbourhood; found 12; allowed: 8, 16 or 24"}},
+      {"planning: {astar: {grid: hexagonal}}\n",
+       {"7:26 planning.astar.grid: not one of the words; found hexagonal; allowed: regular, irregular, triangular"}},
       {"safety: {min_water_depth_m: 30}\n",
        {"7:29 safety.min_water_depth_m: depth limits need bathymetry, which this version does not read; leave the key "
         "out"}},

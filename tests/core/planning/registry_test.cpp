@@ -6,11 +6,11 @@ using namespace glidehelm;
 
 TEST_CASE("every name of the list makes a planner that answers to it, and no other name does") {
   CHECK(planning::method_names() ==
-        std::vector<std::string>{"direct", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"});
+        std::vector<std::string>{"direct", "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"});
   for (const auto& name : planning::method_names()) {
     const auto planner = planning::planner_named(name);
     REQUIRE(planner);
     CHECK(planner->name() == name);
   }
-  for (const char* name : {"", "astar", "Direct", "best "}) CHECK_FALSE(planning::planner_named(name));
+  for (const char* name : {"", "a-star", "Direct", "best "}) CHECK_FALSE(planning::planner_named(name));
 }

@@ -157,4 +157,16 @@ std::string answer(const mission::PlanningRequest& request, const OceanSource& o
   return "";
 }
 
+Expected<planning::Bound, planning::PlanFailure> certificate(const mission::PlanningRequest& request,
+                                                             const OceanSource& ocean, const chart::Chart& chart,
+                                                             double known_arrival_s,
+                                                             const std::function<bool()>& expired) {
+  auto problem = request.problem;
+  problem.horizon_s = horizon_of(request);
+  const PlanningOcean waters{ocean, request};
+  planning::BoundSettings settings;
+  if (!std::isnan(known_arrival_s)) settings.earlier_than_s = known_arrival_s;
+  return planning::lower_bound(problem, waters.ocean(), chart, {kCertificateWork, expired}, settings);
+}
+
 }  // namespace glidehelm::daemon

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/mission/event.hpp"
+#include "core/planning/lower_bound.hpp"
 #include "daemon/ocean_source.hpp"
 
 namespace glidehelm::daemon {
@@ -23,6 +24,16 @@ std::string answer(const mission::PlanningRequest& request, const OceanSource& o
 /// The file of one plan with what it promises: `answer` uses it for every plan it finds.
 mission::Candidate candidate_for(const planning::Plan& plan, const mission::PlanningRequest& request,
                                  const planning::Problem& problem, const OceanSource& ocean, const chart::Chart& chart);
+
+/// Steps of markers after which the certificate is given up: some ten seconds.
+inline constexpr std::uint64_t kCertificateWork = 20'000'000;
+
+/// The certificate of a request, on the same currents as its plan. `known_arrival_s`: epoch seconds of a plan that arrives, NaN
+/// without one. `expired` cuts it.
+Expected<planning::Bound, planning::PlanFailure> certificate(const mission::PlanningRequest& request,
+                                                             const OceanSource& ocean, const chart::Chart& chart,
+                                                             double known_arrival_s,
+                                                             const std::function<bool()>& expired);
 
 /// The horizon of a request (epoch seconds): as wanted, else automatic; at least two stints.
 double horizon_of(const mission::PlanningRequest& request);

@@ -52,22 +52,37 @@ Json inputs_json(const Case& c) {
           {"cell_m", p.cell.si()}};
 }
 
-Json plan_json(const Case& c, const std::optional<mission::Candidate>& found, const std::string& problem,
+/// Null where there is no bound, or no plan that arrives to compare with.
+void add_certificate(Json& j, const Expected<planning::Bound, planning::PlanFailure>& bound, double travel_s) {
+  const bool known = bound && bound->kind == planning::Bound::Kind::arrival;
+  j["lower_bound_s"] = known ? Json(bound->travel_s) : Json(nullptr);
+  j["lower_bound_error_s"] = known ? Json(bound->error_s) : Json(nullptr);
+  j["gap"] = known && bound->travel_s > 0 ? number_or_null(travel_s / bound->travel_s - 1) : Json(nullptr);
+}
+
+/// No plan arrives, and it is proven that none can.
+bool proven_unreachable(const Expected<planning::Bound, planning::PlanFailure>& bound, bool arrives) {
+  return !arrives && bound && bound->kind == planning::Bound::Kind::unreachable;
+}
+
+Json plan_json(const Case& c, const std::optional<mission::Candidate>& found,
+               const Expected<planning::Bound, planning::PlanFailure>& bound, const std::string& problem,
                double wall_s) {
   const auto& p = c.request.problem;
   Json j{{"schema", "glidehelm/plan/v1"}};
   const planning::Plan nothing;
   const auto& plan = found ? found->plan : nothing;
   j["method"] = found ? plan.method : c.request.method;
-  j["status"] = !found ? "no_plan" : plan.reaches_goal() ? "reaches_goal" : "closest_approach";
-  j["reason"] = found ? plan.reason : problem;
+  const bool arrives = found && plan.reaches_goal();
+  const bool proven = proven_unreachable(bound, arrives);
+  j["status"] = proven ? "proven_unreachable" : !found ? "no_plan" : arrives ? "reaches_goal" : "closest_approach";
+  j["reason"] = proven ? bound->reason : found ? plan.reason : problem;
   j["inputs"] = inputs_json(c);
   j["start"] = place(p.start.fix, p.start.fix_s);
-  const bool arrives = found && plan.reaches_goal();
   j["travel_time_s"] = arrives ? Json(plan.arrival_s - p.start.fix_s) : Json(nullptr);
   j["arrival"] = arrives ? Json(utc_text(instant_at(plan.arrival_s), true)) : Json(nullptr);
   j["remaining_distance_m"] = found ? plan.remaining.si() : distance(p.start.fix, planning::disc_of(p).centre).si();
-  for (const char* name : {"lower_bound_s", "lower_bound_error_s", "gap"}) j[name] = nullptr;
+  add_certificate(j, bound, arrives ? plan.arrival_s - p.start.fix_s : std::nan(""));
   j["stints"] = Json::array();
   for (const auto& s : plan.stints)
     j["stints"].push_back({{"dive", place(s.dive, s.dive_s)},
@@ -99,6 +114,13 @@ Json plan_json(const Case& c, const std::optional<mission::Candidate>& found, co
 std::string hours(double seconds) {
   const auto minutes = static_cast<long>(std::llround(seconds / 60));
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
+}
+
+void print_certificate(const Expected<planning::Bound, planning::PlanFailure>& bound, double travel_s,
+                       std::ostream& out) {
+  if (bound && bound->kind == planning::Bound::Kind::arrival)
+    out << fmt::format("no vehicle arrives earlier than {} after the fix: this plan is at most {:.2f} % above that\n",
+                       hours(bound->travel_s), 100 * (travel_s / bound->travel_s - 1));
 }
 
 void print_table(const Case& c, const mission::Candidate& found, std::ostream& out) {
@@ -190,10 +212,14 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
   const auto begin = world.clock.tick();
   const auto waited = [&] { return Seconds{world.clock.tick() - begin}; };
   std::optional<mission::Candidate> found;
-  std::string problem = daemon::answer(
-      c->request, *c->ocean, c->chart->chart,
-      options.budget ? std::function<bool()>{[&] { return waited() >= *options.budget; }} : std::function<bool()>{},
-      [&](mission::Candidate candidate) { found = std::move(candidate); });
+  const auto expired =
+      options.budget ? std::function<bool()>{[&] { return waited() >= *options.budget; }} : std::function<bool()>{};
+  std::string problem = daemon::answer(c->request, *c->ocean, c->chart->chart, expired,
+                                       [&](mission::Candidate candidate) { found = std::move(candidate); });
+  const auto planned = waited();
+  const bool arrives = found && found->plan.reaches_goal();
+  const double arrival_s = arrives ? found->plan.arrival_s : std::nan("");
+  const auto bound = daemon::certificate(c->request, *c->ocean, c->chart->chart, arrival_s, expired);
   if (!found) {  // a start or goal that cannot be is named with its line
     std::string places;
     for (const auto& error : daemon::Places{world.files}.errors_of(c->mission, c->mission_text, options.mission))
@@ -201,9 +227,12 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
     if (!places.empty()) problem = places;
   }
   if (options.json)
-    out << plan_json(*c, found, problem, waited().count()).dump() << "\n";
-  else if (found)
+    out << plan_json(*c, found, bound, problem, planned.count()).dump() << "\n";
+  else if (found) {
     print_table(*c, *found, out);
+    if (arrives) print_certificate(bound, arrival_s - c->request.problem.start.fix_s, out);
+  }
+  if (!options.json && proven_unreachable(bound, arrives)) out << "proven unreachable: " << bound->reason << "\n";
   if (!found) {
     err << "glidehelm plan: " << problem << "\n";
     return options.budget && waited() >= *options.budget ? 5 : 1;

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "core/chart/chart.hpp"
+#include "core/ocean/field.hpp"
+#include "core/planning/winding.hpp"
+#include "core/vehicle/motion.hpp"
+
+namespace glidehelm::planning {
+
+/// The boundary of what a vehicle can have reached that is free to change its heading at every instant.
+///
+/// A closed clockwise polygon of markers. Each follows Zermelo's extremal (Zermelo 1931; Bryson & Ho 1975, 2.7):
+/// dx/dt = c(x, t) + U·n with n normal to the front. A step holds the heading that the marker will have at its middle, and
+/// carries a second place, `kBeside` along the front: the line between the two ends gives the new normal, (Dφ)⁻ᵀn, so no
+/// gradient of the field is asked for. Second order in the step. Drifting is the same with U = 0. Nothing depends on |c| < U.
+///
+/// Every marker is where the vehicle can be, so none is ever too early; the earliest arrival is not missed as long as the
+/// polygon covers the boundary. Hence three rules:
+/// - `refine`: edges longer than `spacing`, or that turn much, get markers on the cubic that has the ends' normals
+///   (fourth order in the spacing).
+/// - `prune`: swallowtails grow without limit and are cut. A place about which the polygon winds is reached (the degree of
+///   the map from slower vehicles' extremals to the plane); a marker is dropped when that holds for its cell and the eight
+///   around it. What is cut off is inside for good: from inside the set no motion leads to its boundary.
+/// - walls: a marker that would leave the water stays, and the first in each spacing of wall sends headings to all sides; those that run along the wall or
+///   round its end carry the front on. A stuck marker stays also where a current would tear it off: too early, not too late.
+///
+/// Radians, metres, seconds, m/s. Deterministic. One step costs eight current evaluations per marker.
+class Front {
+ public:
+  static constexpr double kBeside = 10.0;             ///< metres
+  static constexpr std::size_t kMostMarkers = 60000;  ///< more are not refined; `complete` is false from then on
+
+  /// All headings at one place. `spacing` in metres; `clearance` from land and borders is kept.
+  Front(GeoPoint at, ocean::FieldRef dive, const chart::Chart& chart, double clearance, double spacing);
+
+  /// Moves all markers by one step with `speed` through water (0 drifts). Returns the seconds after `t_s` at which the front
+  /// first enters `goal`, if it does within this step. `retry`: markers at walls try to leave them.
+  std::optional<double> advance(ocean::FieldRef field, double speed, double t_s, double dt, const vehicle::Disc& goal,
+                                bool retry);
+  void refine();
+  /// Nothing happens while there are few more markers than after the last time. `t_s`: epoch seconds at which the end of the data is looked for.
+  void prune(double t_s);
+  /// Stops the markers (radians) for which `useless` holds: they stay where they are for good.
+  void stop(const std::function<bool(double lat, double lon)>& useless);
+  [[nodiscard]] const std::vector<Marker>& markers() const { return markers_; }
+  [[nodiscard]] bool complete() const { return complete_; }
+  [[nodiscard]] bool met_land() const { return met_land_; }  ///< or the border of an area: a wall of the chart
+  [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+
+ private:
+  void move_batch(ocean::FieldRef field, double speed, double t_s, double dt, std::size_t first, std::size_t last);
+  void settle(Marker& m, const Marker& before, ocean::FieldRef field, double speed, double t_s, double dt, bool lost);
+  bool blocked(std::int64_t row, std::int64_t column, double t_s);
+  bool fan_out();
+  [[nodiscard]] std::int64_t wall_cell(const Marker& m) const;
+  void creep(const Marker& a, const Marker& b, std::vector<Marker>& out);
+  void add_between(const Marker& a, const Marker& b, std::vector<Marker>& out);
+  [[nodiscard]] bool clear_way(const Marker& from, double lat, double lon) const;
+  [[nodiscard]] std::optional<double> entry(const vehicle::Disc& goal, double dt, double reach);
+
+  ocean::FieldRef dive_;
+  const chart::Chart& chart_;
+  double clearance_, spacing_;
+  Lattice lattice_;  ///< of half the spacing
+  std::unordered_map<std::int64_t, bool> blocked_;  ///< middles of its cells; only asked, never walked through
+  std::vector<Marker> markers_, before_;
+  std::vector<std::size_t> moving_;
+  std::unordered_set<std::int64_t> walls_, creeps_;  ///< cells that have sent; only asked, never walked through
+  double room_{};     ///< metres that nothing can have come nearer than to the goal's disc
+  bool met_land_{};
+  std::size_t after_prune_{};
+  bool complete_{true};
+  std::size_t evaluations_{};
+};
+
+}  // namespace glidehelm::planning

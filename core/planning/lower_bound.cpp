@@ -1,0 +1,236 @@
+#include "core/planning/lower_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/planning/envelope.hpp"
+#include "core/planning/flight.hpp"
+#include "core/planning/front.hpp"
+
+namespace glidehelm::planning {
+
+namespace {
+
+constexpr double kOwnClearance = 0.1;  // of the spacing: by how much walls are drawn back
+constexpr double kCorners = 6;         // spacings that the front may be late behind the corners of land
+
+/// One run of a front from the fix to the goal.
+class Run {
+ public:
+  enum class End { reached, not_reached, cut };
+
+  Run(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, double speed, double spacing,
+      double step, double until)
+      : problem_{problem},
+        ocean_{ocean},
+        goal_{disc_of(problem)},
+        speed_{speed},
+        step_{step},
+        until_{until},
+        envelope_{speed + ocean.dive.fastest().si(), ocean.surface.fastest().si(), problem.schedule.stint.count(),
+                  problem.schedule.surface.count()},
+        front_{problem.start.fix, ocean.dive, chart, clearance(problem, chart, spacing), spacing} {}
+
+  End go(const Budget& budget, int surfacings_per_isochrone) {
+    if (distance(problem_.start.fix, goal_.centre) <= goal_.radius) return reach(0);
+    for (int stint = 0; now_ < until_; ++stint) {
+      if (budget.expired && budget.expired()) return End::cut;
+      if (steps() > budget.work || !front_.complete()) return End::cut;
+      if (move(ocean_.surface, 0, problem_.schedule.drift_before(stint).count())) return reach(now_);
+      if (move(ocean_.dive, speed_, problem_.schedule.stint_length(stint).count())) return reach(now_);
+      front_.stop([this](double lat, double lon) {
+        const double way =
+            distance_lower_bound(lat, lon, goal_.centre.lat.radians(), goal_.centre.lon.radians()) - goal_.radius.si();
+        return now_ + envelope_.least_time(way) > until_;
+      });
+      if (surfacings_per_isochrone > 0 && stint % surfacings_per_isochrone == 0) keep_isochrone();
+      if (nothing_moves()) return End::not_reached;
+    }
+    return End::not_reached;
+  }
+
+  [[nodiscard]] double arrival() const { return now_; }
+  [[nodiscard]] std::uint64_t steps() const { return front_.evaluations() / 8; }
+  [[nodiscard]] bool met_land() const { return front_.met_land(); }
+  [[nodiscard]] std::size_t evaluations() const { return front_.evaluations(); }
+  [[nodiscard]] std::vector<Isochrone> isochrones() { return std::move(isochrones_); }
+
+ private:
+  /// A start or goal inside the margin makes it smaller everywhere: the reached set only grows by that.
+  static double clearance(const Problem& problem, const chart::Chart& chart, double spacing) {
+    const double start = chart.clearance(problem.start.fix).si() - 1.0;
+    return std::max(0.0, std::min(problem.coast_margin.si() - kOwnClearance * spacing, start));
+  }
+  End reach(double when) {
+    now_ = when;
+    return now_ <= until_ ? End::reached : End::not_reached;
+  }
+  /// True when the goal is reached; `now_` is then the arrival.
+  bool move(ocean::FieldRef field, double speed, double seconds) {
+    const int steps = std::max(1, static_cast<int>(std::ceil(seconds / step_ - 1e-9)));
+    const double dt = seconds / steps, begin = now_;
+    if (seconds <= 0) return false;
+    for (int i = 0; i < steps; ++i) {
+      const double t = begin + i * dt;
+      if (t > until_) break;
+      const auto entry = front_.advance(field, speed, problem_.start.fix_s + t, dt, goal_, i == 0 && speed > 0);
+      if (entry) {
+        now_ = t + *entry;
+        return true;
+      }
+      if (speed > 0) {
+        front_.refine();
+        front_.prune(problem_.start.fix_s + t);
+      }
+    }
+    now_ = begin + seconds;
+    return false;
+  }
+  void keep_isochrone() {
+    Isochrone line{problem_.start.fix_s + now_, {}};
+    for (const auto& m : front_.markers()) line.line.push_back(GeoPoint::from_kernel(m.lat, m.lon));
+    isochrones_.push_back(std::move(line));
+  }
+  [[nodiscard]] bool nothing_moves() const {
+    return std::all_of(front_.markers().begin(), front_.markers().end(), [](const Marker& m) { return m.idle; });
+  }
+
+  const Problem& problem_;
+  const ocean::Ocean& ocean_;
+  vehicle::Disc goal_;
+  double speed_, step_, until_;  ///< seconds from the fix
+  Envelope envelope_;
+  Front front_;
+  double now_{};
+  std::vector<Isochrone> isochrones_;
+};
+
+double spacing_of(const Problem& problem, const BoundSettings& settings) {
+  if (settings.spacing.si() > 0) return settings.spacing.si();
+  return std::clamp(distance(problem.start.fix, disc_of(problem).centre).si() / 130, 100.0, 5000.0);
+}
+
+std::string hours(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.1f h", seconds / 3600);
+  return text;
+}
+
+/// All runs of one answer.
+class Certificate {
+ public:
+  Certificate(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
+              const BoundSettings& settings)
+      : problem_{problem},
+        ocean_{ocean},
+        chart_{chart},
+        budget_{budget},
+        settings_{settings},
+        spacing_{spacing_of(problem, settings)},
+        step_{settings.step.count() > 0 ? settings.step.count()
+                                        : std::min(3600.0, spacing_ / problem.glider.horizontal_speed.si())},
+        horizon_{problem.horizon_s - problem.start.fix_s} {}
+
+  Bound make() {
+    const double known = settings_.earlier_than_s - problem_.start.fix_s;
+    // A tenth over a known arrival leaves room for the coarse run to be late.
+    const double until = std::min(horizon_, 1.1 * known);
+    const auto fine = run(0, 1, until, settings_.surfacings_per_isochrone);
+    if (!fine) return cut();
+    if (std::isnan(*fine)) return until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
+                                                   : prove_unreachable();
+    const auto coarse = run(0, 2, until, 0);
+    if (!coarse) return cut();
+    const double other = std::isnan(*coarse) ? until : *coarse;
+    const double error = std::abs(other - *fine) + kLeastError * *fine;
+    if (!met_land_) {
+      certify(*fine, error);
+      return std::move(bound_);
+    }
+    // Does the coast matter? Without it the front has no corners to go round, and what it says is a bound in any case.
+    const auto open = run(0, 1, until, 0, true);
+    if (!open) return cut();
+    const double detour = std::isnan(*open) ? 0.0 : std::max(0.0, *fine - *open);
+    certify(*fine, error + std::min(late_at_corners(), detour));
+    return std::move(bound_);
+  }
+
+ private:
+  void certify(double arrival, double error) {
+    bound_.kind = Bound::Kind::arrival;
+    bound_.error_s = std::min(error, arrival);
+    bound_.travel_s = arrival - bound_.error_s;
+  }
+  Bound prove_unreachable() {
+    const auto raised = run(kSpeedBar, 1, horizon_ + (met_land_ ? late_at_corners() : 0.0), 0);
+    if (!raised) return cut();
+    if (!std::isnan(*raised)) {  // within the bar of the horizon: the faster vehicle's arrival is a bound
+      const double late = met_land_ ? late_at_corners() : 0.0;
+      certify(horizon_, std::max(0.0, horizon_ - *raised) + late + kLeastError * horizon_);
+      return std::move(bound_);
+    }
+    bound_.kind = Bound::Kind::unreachable;
+    bound_.travel_s = std::nan("");
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "no vehicle with this speed and dive schedule, free to turn at every instant, reaches the goal within "
+                  "the horizon of %s, not even %.1f %% faster",
+                  hours(horizon_).c_str(), 100 * kSpeedBar);
+    bound_.reason = text;
+    return std::move(bound_);
+  }
+  Bound nothing(std::string reason) {
+    bound_.kind = Bound::Kind::cut;
+    bound_.travel_s = std::nan("");
+    bound_.reason = std::move(reason);
+    return std::move(bound_);
+  }
+  [[nodiscard]] double late_at_corners() const {
+    return kCorners * spacing_ / problem_.glider.horizontal_speed.si();
+  }
+  Bound cut() { return nothing("the front was stopped before it came to the goal"); }
+
+  /// Seconds from the fix, NaN when the goal is not reached; none when the budget ended.
+  std::optional<double> run(double raised, double coarser, double until, int isochrones,
+                            bool open_water = false) {
+    Budget rest = budget_;
+    rest.work -= std::min(rest.work, bound_.statistics.expansions);
+    static const chart::Chart kOpen;
+    Run one{problem_, ocean_, open_water ? kOpen : chart_, problem_.glider.horizontal_speed.si() * (1 + raised), coarser * spacing_,
+            coarser * step_, until};
+    const auto end = one.go(rest, isochrones);
+    bound_.statistics.expansions += one.steps();
+    bound_.statistics.current_evaluations += one.evaluations();
+    met_land_ = met_land_ || one.met_land();
+    if (isochrones > 0) bound_.isochrones = one.isochrones();
+    if (end == Run::End::cut) return std::nullopt;
+    return end == Run::End::reached ? one.arrival() : std::nan("");
+  }
+
+  const Problem& problem_;
+  const ocean::Ocean& ocean_;
+  const chart::Chart& chart_;
+  const Budget& budget_;
+  const BoundSettings& settings_;
+  double spacing_, step_, horizon_;
+  bool met_land_{};
+  Bound bound_;
+};
+
+}  // namespace
+
+Expected<Bound, PlanFailure> lower_bound(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
+                                         const Budget& budget, const BoundSettings& settings) {
+  if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);
+  return Certificate{problem, ocean, chart, budget, settings}.make();
+}
+
+double front_arrival(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Metres spacing,
+                     Seconds step) {
+  Run run{problem,           ocean,        chart, problem.glider.horizontal_speed.si(), spacing.si(), step.count(),
+          problem.horizon_s - problem.start.fix_s};
+  return run.go({}, 0) == Run::End::reached ? run.arrival() : std::nan("");
+}
+
+}  // namespace glidehelm::planning

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/planning/planner.hpp"
+
+/// The certificate: how early any vehicle could arrive.
+namespace glidehelm::planning {
+
+/// Where the front was at an instant: a closed line, for maps.
+struct Isochrone {
+  double t_s{};  ///< epoch seconds, a surfacing
+  std::vector<GeoPoint> line;
+};
+
+/// What can be said about the earliest arrival of a vehicle with the problem's speed and dive schedule, in the same currents
+/// and the same water, that may change heading at every instant.
+struct Bound {
+  enum class Kind {
+    arrival,      ///< none arrives earlier than `travel_s`
+    unreachable,  ///< none arrives before the horizon, not even with the speed raised by `kSpeedBar`
+    cut           ///< stopped before there was an answer
+  };
+  Kind kind{Kind::cut};
+  double travel_s{};  ///< seconds from the fix, error already subtracted; of `unreachable` and `cut` NaN
+  double error_s{};   ///< what was subtracted
+  std::string reason;  ///< in words, unless it is an arrival
+  std::vector<Isochrone> isochrones;
+  Statistics statistics;  ///< `expansions`: steps of markers
+};
+
+struct BoundSettings {
+  Metres spacing{};               ///< of the markers; 0 = 1/130 of the way, between 100 m and 5 km
+  Seconds step{};                 ///< longest step; 0 = one spacing through still water, at most 1 h
+  double earlier_than_s{1e18};    ///< epoch seconds: an arrival that is known; only earlier ones are looked for closely
+  int surfacings_per_isochrone{}; ///< 0: none are kept
+};
+
+/// Share of the speed by which `unreachable` is proven beyond: the error that the bound is held to.
+inline constexpr double kSpeedBar = 0.005;
+
+/// The earliest arrival by the front of what can be reached (front.hpp, docs/decisions/022).
+///
+/// Computed twice, the second time with twice the step and spacing. The method is of second order, so the finer result is
+/// about a third of the difference away from the truth; the whole difference and `kLeastError` of the time are the error
+/// bar, and `travel_s` has it subtracted. Where the goal stays unreached the front is moved again with the speed raised by
+/// `kSpeedBar`, and only when that does not reach it either it is `unreachable`.
+///
+/// `budget.work` counts steps of markers over all runs; with `expired` the answer is `cut`. The failures are those of
+/// `check_ends`. Some 10^6 steps of markers, 0.2 µs each, for 650 km.
+Expected<Bound, PlanFailure> lower_bound(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
+                                         const Budget& budget, const BoundSettings& settings = {});
+inline constexpr double kLeastError = 5e-4;
+
+/// The earliest arrival of one run, not certified: seconds from the fix, NaN when the goal is not reached. For tests of the
+/// order.
+double front_arrival(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Metres spacing,
+                     Seconds step);
+
+}  // namespace glidehelm::planning

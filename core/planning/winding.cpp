@@ -1,0 +1,87 @@
+#include "core/planning/winding.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/local_metric.hpp"
+
+namespace glidehelm::planning {
+
+namespace {
+
+/// Winding numbers of cell middles, by counting along each row the edges that cross it west of a cell.
+class Raster {
+ public:
+  Raster(const std::vector<Marker>& polygon, const Lattice& lattice) : lattice_{lattice} {
+    double south = 1e9, west = 1e9, north = -1e9, east = -1e9;
+    for (const auto& m : polygon) {
+      south = std::min(south, row_of(m));
+      north = std::max(north, row_of(m));
+      west = std::min(west, column_of(m));
+      east = std::max(east, column_of(m));
+    }
+    south_ = static_cast<std::int64_t>(std::floor(south)) - 1;
+    west_ = static_cast<std::int64_t>(std::floor(west)) - 1;
+    rows_ = static_cast<std::int64_t>(std::floor(north)) + 2 - south_;
+    columns_ = static_cast<std::int64_t>(std::floor(east)) + 2 - west_;
+    winds_.assign(static_cast<std::size_t>(rows_ * columns_), 0);
+    for (std::size_t i = 0; i < polygon.size(); ++i) cross(polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
+    for (std::int64_t row = 0; row < rows_; ++row)
+      for (std::int64_t column = 1; column < columns_; ++column)
+        wind(row, column) = static_cast<std::int16_t>(wind(row, column) + wind(row, column - 1));
+  }
+
+  template <class Blocked>
+  [[nodiscard]] bool deep(const Marker& m, const Blocked& blocked) {
+    const auto row = static_cast<std::int64_t>(std::floor(row_of(m))) - south_;
+    const auto column = static_cast<std::int64_t>(std::floor(column_of(m))) - west_;
+    if (wind(row, column) == 0 && !m.stuck) return false;
+    for (std::int64_t j = row - 1; j <= row + 1; ++j)
+      for (std::int64_t i = column - 1; i <= column + 1; ++i)
+        if (wind(j, i) == 0 && !blocked(j + south_, i + west_)) return false;
+    return true;
+  }
+
+ private:
+  [[nodiscard]] double row_of(const Marker& m) const { return (m.lat - lattice_.lat) * lattice_.per_lat; }
+  [[nodiscard]] double column_of(const Marker& m) const { return (m.lon - lattice_.lon) * lattice_.per_lon; }
+  std::int16_t& wind(std::int64_t row, std::int64_t column) {
+    return winds_[static_cast<std::size_t>(row * columns_ + column)];
+  }
+  /// Counts an edge in the first cell of each row whose middle lies east of it; upwards is +1: a clockwise
+  /// polygon has +1 inside.
+  void cross(const Marker& a, const Marker& b) {
+    const double ya = row_of(a) - static_cast<double>(south_) - 0.5, yb = row_of(b) - static_cast<double>(south_) - 0.5;
+    if (ya == yb) return;
+    const double xa = column_of(a) - static_cast<double>(west_) - 0.5;
+    const double xb = column_of(b) - static_cast<double>(west_) - 0.5;
+    const double low = std::min(ya, yb), high = std::max(ya, yb);  // rows in (low, high]: each vertex counts once
+    for (auto row = static_cast<std::int64_t>(std::floor(low)) + 1; static_cast<double>(row) <= high; ++row) {
+      const double x = xa + (xb - xa) * (static_cast<double>(row) - ya) / (yb - ya);
+      auto& w = wind(row, static_cast<std::int64_t>(std::floor(x)) + 1);
+      w = static_cast<std::int16_t>(w + (yb > ya ? 1 : -1));
+    }
+  }
+
+  Lattice lattice_;
+  std::int64_t south_{}, west_{}, rows_{}, columns_{};
+  std::vector<std::int16_t> winds_;
+};
+
+}  // namespace
+
+Lattice Lattice::about(double lat, double lon, double cell_m) {
+  const auto metric = LocalMetric::at(lat);
+  return {lat, lon, metric.meridian_radius / cell_m, metric.parallel_radius / cell_m};
+}
+
+std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice,
+                              const std::function<bool(std::int64_t, std::int64_t)>& blocked) {
+  Raster raster{polygon, lattice};
+  std::vector<bool> deep(polygon.size());
+  for (std::size_t i = 0; i < polygon.size(); ++i) deep[i] = raster.deep(polygon[i], blocked);
+  return deep;
+}
+
+}  // namespace glidehelm::planning

@@ -10,13 +10,13 @@ namespace glidehelm::planning {
 namespace {
 
 constexpr int kFirstHeadings = 120;
-constexpr double kMostTurn = 0.12;    // radians between the normals of neighbours
-constexpr double kSmoothTurn = 1.0;   // radians: beyond it an edge is a cusp, not a smooth arc
-constexpr double kShortest = 0.15;    // of the spacing: shorter edges are not refined by their turn
+constexpr double kMostTurn = 0.12;   // radians between the normals of neighbours
+constexpr double kSmoothTurn = 1.0;  // radians: beyond it an edge is a cusp, not a smooth arc
+constexpr double kShortest = 0.15;   // of the spacing: shorter edges are not refined by their turn
 constexpr int kWallHalvings = 6;
-constexpr int kFan = 6;            // headings to each side of a marker at a wall
-constexpr int kMostContacts = 12;  // of one marker in a step
-constexpr double kCheckedWay = 3e4;   // metres
+constexpr int kFan = 6;              // headings to each side of a marker at a wall
+constexpr int kMostContacts = 12;    // of one marker in a step
+constexpr double kCheckedWay = 3e4;  // metres
 
 Offset turned(double east, double north, double clockwise) {
   const double s = std::sin(clockwise), c = std::cos(clockwise);
@@ -124,7 +124,8 @@ void Front::settle(Marker& m, const Marker& before, ocean::FieldRef field, doubl
   double good = 0, bad = 1;
   for (int i = 0; i < kWallHalvings && (dlat != 0 || dlon != 0); ++i) {
     const double u = 0.5 * (good + bad), lat = before.lat + u * dlat, lon = before.lon + u * dlon;
-    const bool clear = clear_way(before, lat, lon) && field.sample(GeoPoint::from_kernel(lat, lon), t_s + u * dt).has_value();
+    const bool clear =
+        clear_way(before, lat, lon) && field.sample(GeoPoint::from_kernel(lat, lon), t_s + u * dt).has_value();
     (clear ? good : bad) = u;
   }
   m = before;
@@ -201,14 +202,14 @@ std::optional<double> Front::entry(const vehicle::Disc& goal, double dt, double 
   if (room_ > 0) return std::nullopt;
   const double lat = goal.centre.lat.radians(), lon = goal.centre.lon.radians(), radius = goal.radius.si();
   double nearest = 1e18;
-  for (const auto& m : markers_)
-    nearest = std::min(nearest, distance_lower_bound(m.lat, m.lon, lat, lon));
+  for (const auto& m : markers_) nearest = std::min(nearest, distance_lower_bound(m.lat, m.lon, lat, lon));
   // Between two markers the front is at most its edge nearer.
   room_ = nearest - radius - 2 * spacing_ - reach;
   if (room_ > 0) return std::nullopt;
   const auto metric = LocalMetric::at(lat);
   const auto place = [&](const Marker& m) {
-    return Offset{std::remainder(m.lon - lon, 2 * kPi) * metric.parallel_radius, (m.lat - lat) * metric.meridian_radius};
+    return Offset{std::remainder(m.lon - lon, 2 * kPi) * metric.parallel_radius,
+                  (m.lat - lat) * metric.meridian_radius};
   };
   std::optional<double> first;
   for (std::size_t i = 0; i < markers_.size(); ++i) {
@@ -285,8 +286,7 @@ void Front::add_between(const Marker& a, const Marker& b, std::vector<Marker>& o
       const double h10 = length * (u3 - 2 * u2 + u), h01 = 3 * u2 - 2 * u3, h11 = length * (u3 - u2);
       shift(m, {h10 * a.north + h01 * way.east + h11 * b.north, -h10 * a.east + h01 * way.north - h11 * b.east});
       const double d10 = length * (3 * u2 - 4 * u + 1), d01 = 6 * u - 6 * u2, d11 = length * (3 * u2 - 2 * u);
-      const Offset t{d10 * a.north + d01 * way.east + d11 * b.north,
-                     -d10 * a.east + d01 * way.north - d11 * b.east};
+      const Offset t{d10 * a.north + d01 * way.east + d11 * b.north, -d10 * a.east + d01 * way.north - d11 * b.east};
       const double l = t.length();
       m.east = -t.north / l;
       m.north = t.east / l;
@@ -320,8 +320,8 @@ void Front::refine() {
       const bool resting = rests(last) && rests(m) && rests(next);
       const bool free = !rests(last) && !rests(m) && !rests(next);
       if (resting ? length < spacing_
-                    : free && length < 0.6 * spacing_ && std::abs(turn_between(last, m)) < 0.5 * kMostTurn &&
-                          std::abs(turn_between(last, next)) < 0.8 * kMostTurn)
+                  : free && length < 0.6 * spacing_ && std::abs(turn_between(last, m)) < 0.5 * kMostTurn &&
+                        std::abs(turn_between(last, next)) < 0.8 * kMostTurn)
         continue;
     }
     out.push_back(m);
@@ -339,16 +339,17 @@ bool Front::blocked(std::int64_t row, std::int64_t column, double t_s) {
   if (known != blocked_.end()) return known->second;
   const double lat = lattice_.lat + (static_cast<double>(row) + 0.5) / lattice_.per_lat;
   const double lon = lattice_.lon + (static_cast<double>(column) + 0.5) / lattice_.per_lon;
-  const bool blocked = !(chart_.clearance_at_least(lat, lon) >= clearance_ || chart_.clearance(lat, lon) >= clearance_) ||
-                       !dive_.sample(GeoPoint::from_kernel(lat, lon), t_s);
+  const bool blocked =
+      !(chart_.clearance_at_least(lat, lon) >= clearance_ || chart_.clearance(lat, lon) >= clearance_) ||
+      !dive_.sample(GeoPoint::from_kernel(lat, lon), t_s);
   blocked_.emplace(key, blocked);
   return blocked;
 }
 
 void Front::prune(double t_s) {
   if (markers_.size() < after_prune_ + after_prune_ / 8) return;
-  const auto deep = deep_inside(markers_, lattice_,
-                                [&](std::int64_t row, std::int64_t column) { return blocked(row, column, t_s); });
+  const auto deep =
+      deep_inside(markers_, lattice_, [&](std::int64_t row, std::int64_t column) { return blocked(row, column, t_s); });
   std::vector<Marker> kept;
   kept.reserve(markers_.size());
   const std::size_t count = markers_.size();

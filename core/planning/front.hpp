@@ -30,7 +30,7 @@ namespace glidehelm::planning {
 /// - `prune`: swallowtails grow without limit and are cut. A place about which the polygon winds is reached (the degree of
 ///   the map from slower vehicles' extremals to the plane); a marker is dropped when that holds for its cell and the eight
 ///   around it. What is cut off is inside for good: from inside the set no motion leads to its boundary.
-/// - walls: a marker that would leave the water stays, and the first in each spacing of wall sends headings to all sides; those that run along the wall or
+/// - walls: a marker that would leave the water stays, and the first in each half spacing of wall sends headings to all sides; those that run along the wall or
 ///   round its end carry the front on. A stuck marker stays also where a current would tear it off: too early, not too late.
 ///
 /// Radians, metres, seconds, m/s. Deterministic. One step costs eight current evaluations per marker.
@@ -70,12 +70,12 @@ class Front {
   ocean::FieldRef dive_;
   const chart::Chart& chart_;
   double clearance_, spacing_;
-  Lattice lattice_;  ///< of half the spacing
+  Lattice lattice_;                                 ///< of half the spacing
   std::unordered_map<std::int64_t, bool> blocked_;  ///< middles of its cells; only asked, never walked through
   std::vector<Marker> markers_, before_;
   std::vector<std::size_t> moving_;
   std::unordered_set<std::int64_t> walls_, creeps_;  ///< cells that have sent; only asked, never walked through
-  double room_{};     ///< metres that nothing can have come nearer than to the goal's disc
+  double room_{};  ///< metres that nothing can have come nearer than to the goal's disc
   bool met_land_{};
   std::size_t after_prune_{};
   bool complete_{true};

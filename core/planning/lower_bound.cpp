@@ -138,8 +138,9 @@ class Certificate {
     const double until = std::min(horizon_, 1.1 * known);
     const auto fine = run(0, 1, until, settings_.surfacings_per_isochrone);
     if (!fine) return cut();
-    if (std::isnan(*fine)) return until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
-                                                   : prove_unreachable();
+    if (std::isnan(*fine))
+      return until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
+                              : prove_unreachable();
     const auto coarse = run(0, 2, until, 0);
     if (!coarse) return cut();
     const double other = std::isnan(*coarse) ? until : *coarse;
@@ -173,10 +174,11 @@ class Certificate {
     bound_.kind = Bound::Kind::unreachable;
     bound_.travel_s = std::nan("");
     char text[256];
-    std::snprintf(text, sizeof text,
-                  "no vehicle with this speed and dive schedule, free to turn at every instant, reaches the goal within "
-                  "the horizon of %s, not even %.1f %% faster",
-                  hours(horizon_).c_str(), 100 * kSpeedBar);
+    std::snprintf(
+        text, sizeof text,
+        "no vehicle with this speed and dive schedule, free to turn at every instant, reaches the goal within "
+        "the horizon of %s, not even %.1f %% faster",
+        hours(horizon_).c_str(), 100 * kSpeedBar);
     bound_.reason = text;
     return std::move(bound_);
   }
@@ -186,19 +188,21 @@ class Certificate {
     bound_.reason = std::move(reason);
     return std::move(bound_);
   }
-  [[nodiscard]] double late_at_corners() const {
-    return kCorners * spacing_ / problem_.glider.horizontal_speed.si();
-  }
+  [[nodiscard]] double late_at_corners() const { return kCorners * spacing_ / problem_.glider.horizontal_speed.si(); }
   Bound cut() { return nothing("the front was stopped before it came to the goal"); }
 
   /// Seconds from the fix, NaN when the goal is not reached; none when the budget ended.
-  std::optional<double> run(double raised, double coarser, double until, int isochrones,
-                            bool open_water = false) {
+  std::optional<double> run(double raised, double coarser, double until, int isochrones, bool open_water = false) {
     Budget rest = budget_;
     rest.work -= std::min(rest.work, bound_.statistics.expansions);
     static const chart::Chart kOpen;
-    Run one{problem_, ocean_, open_water ? kOpen : chart_, problem_.glider.horizontal_speed.si() * (1 + raised), coarser * spacing_,
-            coarser * step_, until};
+    Run one{problem_,
+            ocean_,
+            open_water ? kOpen : chart_,
+            problem_.glider.horizontal_speed.si() * (1 + raised),
+            coarser * spacing_,
+            coarser * step_,
+            until};
     const auto end = one.go(rest, isochrones);
     bound_.statistics.expansions += one.steps();
     bound_.statistics.current_evaluations += one.evaluations();
@@ -228,7 +232,12 @@ Expected<Bound, PlanFailure> lower_bound(const Problem& problem, const ocean::Oc
 
 double front_arrival(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Metres spacing,
                      Seconds step) {
-  Run run{problem,           ocean,        chart, problem.glider.horizontal_speed.si(), spacing.si(), step.count(),
+  Run run{problem,
+          ocean,
+          chart,
+          problem.glider.horizontal_speed.si(),
+          spacing.si(),
+          step.count(),
           problem.horizon_s - problem.start.fix_s};
   return run.go({}, 0) == Run::End::reached ? run.arrival() : std::nan("");
 }

@@ -23,18 +23,18 @@ struct Bound {
     cut           ///< stopped before there was an answer
   };
   Kind kind{Kind::cut};
-  double travel_s{};  ///< seconds from the fix, error already subtracted; of `unreachable` and `cut` NaN
-  double error_s{};   ///< what was subtracted
+  double travel_s{};   ///< seconds from the fix, error already subtracted; of `unreachable` and `cut` NaN
+  double error_s{};    ///< what was subtracted
   std::string reason;  ///< in words, unless it is an arrival
   std::vector<Isochrone> isochrones;
   Statistics statistics;  ///< `expansions`: steps of markers
 };
 
 struct BoundSettings {
-  Metres spacing{};               ///< of the markers; 0 = 1/130 of the way, between 100 m and 5 km
-  Seconds step{};                 ///< longest step; 0 = one spacing through still water, at most 1 h
-  double earlier_than_s{1e18};    ///< epoch seconds: an arrival that is known; only earlier ones are looked for closely
-  int surfacings_per_isochrone{}; ///< 0: none are kept
+  Metres spacing{};             ///< of the markers; 0 = 1/130 of the way, between 100 m and 5 km
+  Seconds step{};               ///< longest step; 0 = one spacing through still water, at most 1 h
+  double earlier_than_s{1e18};  ///< epoch seconds: an arrival that is known; only earlier ones are looked for closely
+  int surfacings_per_isochrone{};  ///< 0: none are kept
 };
 
 /// Share of the speed by which `unreachable` is proven beyond: the error that the bound is held to.

@@ -51,9 +51,9 @@ chart::Chart walls(std::vector<chart::Area> keep_out) {
   return chart::Chart{std::move(sources)};
 }
 chart::Area rectangle(const char* name, double west, double south, double east, double north) {
-  return {name,
-          {about_equator(west, south), about_equator(east, south), about_equator(east, north),
-           about_equator(west, north)}};
+  return {
+      name,
+      {about_equator(west, south), about_equator(east, south), about_equator(east, north), about_equator(west, north)}};
 }
 test::FromFunction plane_field(std::function<std::pair<double, double>(double x, double y, double t)> f, double bound) {
   const auto m = LocalMetric::at(0);
@@ -94,8 +94,7 @@ TEST_CASE("the bound in a linear shear is Zermelo's closed form") {
 TEST_CASE("the bound in a solid rotation is a straight line in the rotating frame") {
   // In a frame that turns with the water the reached set is a disc of radius U·t: |G(−ω·t) − S| = U·t + r.
   const double omega = 1.5e-5, r = 100, sx = -12e3, sy = 3e3, gx = 14e3, gy = 5e3;
-  const auto field =
-      plane_field([omega](double x, double y, double) { return std::pair{-omega * y, omega * x}; }, 2.0);
+  const auto field = plane_field([omega](double x, double y, double) { return std::pair{-omega * y, omega * x}; }, 2.0);
   const auto p = submerged(about_equator(sx, sy), about_equator(gx, gy), r);
   const double truth = first_zero(
       [&](double t) {

@@ -172,7 +172,7 @@ TEST_CASE("no plan is earlier than the bound on any analytic sea") {
     REQUIRE(bound.kind == Bound::Kind::arrival);
     CHECK(bound.error_s <= 0.005 * bound.travel_s);
     const std::array<ocean::Ocean, 1> members{ocean::Ocean{sea.field, sea.field}};
-    for (const auto& method : planning::method_names()) {
+    for (const char* method : {"direct", "best"}) {  // best is never later than any method
       const auto plan = planning::planner_named(method)->plan(sea.problem, members, chart::Chart{}, {}, {});
       if (plan && plan->reaches_goal()) CHECK(plan->arrival_s - test::kT0 >= bound.travel_s);
     }

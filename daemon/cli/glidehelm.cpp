@@ -7,6 +7,7 @@
 #include "core/base/utc.hpp"
 #include "daemon/cli/check.hpp"
 #include "daemon/cli/coast.hpp"
+#include "daemon/cli/compare.hpp"
 #include "daemon/cli/field.hpp"
 #include "daemon/cli/mafile.hpp"
 #include "daemon/cli/plan.hpp"
@@ -146,6 +147,47 @@ void add_rehearse(CLI::App& app, Action& action) {
   });
 }
 
+void add_compare(CLI::App& app, Action& action) {
+  struct Words {
+    cli::CompareOptions options;
+    std::string from, at;
+    double budget{};
+  };
+  auto o = std::make_shared<Words>();
+  auto& c = o->options;
+  auto* verb = app.add_subcommand("compare", "Plan missions with every method and hold the plans against each other");
+  verb->add_option("MISSION", c.missions, "Mission files (schema glidehelm/mission/v1)")->required();
+  verb->add_option("--methods", c.methods, "Only these, e.g. direct,best (default: all)")->delimiter(',');
+  auto* from = verb->add_option("--from", o->from, "LAT,LON of the fix, degrees (default: each mission's start)");
+  auto* at = verb->add_option("--at", o->at, "UTC of the fix (default: the mission's start time, else now)");
+  auto* seed = verb->add_option("--seed", "For methods that draw");
+  auto* budget = verb->add_option("--budget", o->budget, "Seconds for each method (default: until its work is done)")
+                     ->check(CLI::PositiveNumber);
+  verb->add_flag("!--no-bound", c.bound, "Without the lower bound (it takes a few seconds on long ways)");
+  verb->add_option("--html", c.html, "Write one page with tables and maps to this new file");
+  verb->add_flag("--json", c.json, "One JSON document on standard output (schema glidehelm/comparison/v1)");
+  verb->footer(
+      "All methods see the same currents, coast, schedule and glider; the best comes first. `above bound` says by how "
+      "much a\n"
+      "plan is slower than the earliest arrival that any vehicle of this speed could have, whatever it steers: the "
+      "rest "
+      "is not\n"
+      "to be had. `made by` names the stage whose plan it is.\n"
+      "\n"
+      "Examples:\n"
+      "  glidehelm compare leg-2.yaml\n"
+      "  glidehelm compare leg-*.yaml --methods direct,cts-astar,best --html methods.html\n"
+      "\n"
+      "Exit: 0 some method reaches every goal, 1 none reaches one of them, 2 usage.");
+  verb->callback([=, &action] {
+    if (*from) o->options.plan.from = pair_from(o->from, "--from");
+    if (*at) o->options.plan.at = time_from(o->at, "--at");
+    if (*seed) o->options.plan.seed = seed->as<std::uint64_t>();
+    if (*budget) o->options.plan.budget = Seconds{o->budget};
+    action = [o](world::World& w) { return cli::run_compare(o->options, w, std::cout, std::cerr); };
+  });
+}
+
 void add_replay(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::ReplayOptions>();
   auto* verb = app.add_subcommand("replay", "Every surfacing of dialog logs, and why a fix is refused");
@@ -268,6 +310,7 @@ int main(int argc, char** argv) {
   Action action;
   add_check(app, action);
   add_plan(app, action);
+  add_compare(app, action);
   add_rehearse(app, action);
   add_replay(app, action);
   add_mafile(app, action);

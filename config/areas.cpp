@@ -33,21 +33,6 @@ std::size_t distinct_corners(std::vector<GeoPoint>& corners) {
   return static_cast<std::size_t>(std::unique(sorted.begin(), sorted.end()) - sorted.begin());
 }
 
-void read_polygon(const At& at, chart::Area& area) {
-  if (!expect_list(at, 3, std::numeric_limits<int>::max())) return;
-  bool whole = true;
-  for (std::size_t i = 0; i < at.node.items.size(); ++i) {
-    const auto corner_at = at.item(i);
-    Corner corner;
-    if (expect_map(corner_at)) corner_fields().read(corner_at, corner);
-    if (corner.lat_deg && corner.lon_deg)
-      area.vertices.push_back(GeoPoint::from_degrees(*corner.lat_deg, *corner.lon_deg).value());
-    else
-      whole = false;
-  }
-  if (whole && distinct_corners(area.vertices) < 3) at.complain("fewer than three different corners");
-}
-
 /// One geometry or collection after the other; stops at the first error.
 class GeoJsonReader {
  public:
@@ -139,14 +124,39 @@ std::string corner_text(const GeoPoint& p) {
 
 }  // namespace
 
-Shape areas_shape() {
+void read_polygon(const At& at, chart::Area& area) {
+  if (!expect_list(at, 3, std::numeric_limits<int>::max())) return;
+  bool whole = true;
+  for (std::size_t i = 0; i < at.node.items.size(); ++i) {
+    const auto corner_at = at.item(i);
+    Corner corner;
+    if (expect_map(corner_at)) corner_fields().read(corner_at, corner);
+    if (corner.lat_deg && corner.lon_deg)
+      area.vertices.push_back(GeoPoint::from_degrees(*corner.lat_deg, *corner.lon_deg).value());
+    else
+      whole = false;
+  }
+  if (whole && distinct_corners(area.vertices) < 3) at.complain("fewer than three different corners");
+}
+
+Shape polygon_shape() {
   Shape polygon;
   polygon.kind = Shape::Kind::list;
   polygon.at_least = 3;
   polygon.parts.push_back(corner_fields().shape());
+  return polygon;
+}
+
+std::string polygon_text(const std::vector<GeoPoint>& corners) {
+  std::string text;
+  for (const auto& corner : corners) text += (text.empty() ? "[" : ", ") + corner_text(corner);
+  return text + "]";
+}
+
+Shape areas_shape() {
   Shape list;
   list.kind = Shape::Kind::list;
-  list.parts.push_back(polygon);
+  list.parts.push_back(polygon_shape());
   return Fields<Corner>::any_of({list, Shape{}});
 }
 
@@ -176,11 +186,7 @@ void print_areas(const AreasDraft& draft, const std::string& path, const std::st
     return;
   }
   std::string text = "[";
-  for (const auto& area : draft.areas) {
-    text += text.size() == 1 ? "[" : ", [";
-    for (std::size_t i = 0; i < area.vertices.size(); ++i) text += (i == 0 ? "" : ", ") + corner_text(area.vertices[i]);
-    text += "]";
-  }
+  for (const auto& area : draft.areas) text += (text.size() == 1 ? "" : ", ") + polygon_text(area.vertices);
   out.leaf(path, key, text + "]");
 }
 

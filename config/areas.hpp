@@ -18,6 +18,13 @@ struct AreasDraft {
   std::vector<chart::Area> areas;
 };
 
+/// One polygon: a list of corners.
+Shape polygon_shape();
+/// At least three different corners, else complaints.
+void read_polygon(const At& at, chart::Area& area);
+/// "[{lat_deg: …, lon_deg: …}, …]".
+std::string polygon_text(const std::vector<GeoPoint>& corners);
+
 Shape areas_shape();
 void read_areas(const At& at, AreasDraft& draft);
 void print_areas(const AreasDraft& draft, const std::string& path, const std::string& key, Effective& out);

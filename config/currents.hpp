@@ -24,22 +24,36 @@ struct AnalyticDraft : mission::AnalyticSpec {
   AnalyticParams given;
 };
 
-/// One item of `currents`: files or one analytic field, and how to read the files.
-struct CurrentsItem {
+/// Files and how they are read.
+struct FilesDraft {
   std::vector<std::string> files;
-  std::optional<AnalyticDraft> analytic;
   mission::OutsideTime outside_time{mission::OutsideTime::hold};
   mission::Interpolation interpolation{mission::Interpolation::linear};
   std::string east, north;
   std::optional<Instant> time_epoch;
-  mission::Currents::Heights heights{mission::Currents{}.heights};
-  Radians equator_band{mission::Currents{}.equator_band};
+  mission::CurrentFiles::Heights heights{mission::CurrentFiles{}.heights};
+  Radians equator_band{mission::CurrentFiles{}.equator_band};
   std::optional<Metres> fill_gaps;
   std::string grid_file;
-  mission::Currents::Rotation rotation{mission::Currents{}.rotation};
+  mission::CurrentFiles::Rotation rotation{mission::CurrentFiles{}.rotation};
   std::optional<int> vtransform, vstretching;  ///< of s_levels: all five or none
   std::optional<double> theta_s, theta_b;
   std::optional<Metres> critical_depth;
+};
+
+/// One of `sources`.
+struct SourceDraft : FilesDraft {
+  std::string name;
+  std::vector<GeoPoint> region;
+  std::optional<Seconds> from, to;
+};
+
+/// One item of `currents`: files, sources or one analytic field.
+struct CurrentsItem : FilesDraft {
+  std::vector<SourceDraft> sources;
+  Metres blend{mission::Currents{}.blend};
+  Seconds join{mission::Currents{}.join};
+  std::optional<AnalyticDraft> analytic;
   bool local_correction{mission::Currents{}.local_correction};
   Metres correction_length{mission::Currents{}.correction_length};
   Seconds correction_time{mission::Currents{}.correction_time};
@@ -47,7 +61,7 @@ struct CurrentsItem {
 
 /// The shape of `currents`: a map, or a list of maps whose fields add up.
 Shape currents_shape();
-/// Reads `currents` into its items: each has either files or an analytic field; at most one has files; what they say
+/// Reads `currents` into its items: each has files, sources or an analytic field; at most one has files or sources; what they say
 /// about reading files agrees. Relative files are meant from the folder of the mission file.
 void read_currents(const At& at, std::vector<CurrentsItem>& items);
 void print_currents(const std::vector<CurrentsItem>& items, const std::string& path, Effective& out);

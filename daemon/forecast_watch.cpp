@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/utc.hpp"
+#include "core/ocean/freshness.hpp"
 
 namespace glidehelm::daemon {
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr Seconds kTryAgain{600};      // after a reason that passes
 constexpr double kLookAgain_s = 3600;  // at an address
-constexpr double kExpired_s = 72 * 3600.0, kFuture_s = 24 * 3600.0;
+constexpr double kExpired_s = ocean::kExpiredAfter, kFuture_s = 24 * 3600.0;
 
 /// Whether `a` is a later forecast than `b`: by reference time when both name one, else by its end.
 bool later(const OceanSource& a, const OceanSource& b) {
@@ -58,7 +59,10 @@ void ForecastWatch::follow(const mission::Mission& mission) {
 /// new once an hour.
 std::string ForecastWatch::fingerprint() const {
   std::string text = "formula";
-  for (const auto& pattern : mission_->currents.files) {
+  std::vector<std::string> patterns = mission_->currents.files;
+  for (const auto& source : mission_->currents.sources)
+    patterns.insert(patterns.end(), source.files.begin(), source.files.end());
+  for (const auto& pattern : patterns) {
     if (pattern.find("://") != std::string::npos) {
       text += fmt::format("\n{} in hour {:.0f}", pattern, std::floor(epoch_seconds(world_.clock.utc()) / kLookAgain_s));
       continue;
@@ -70,6 +74,11 @@ std::string ForecastWatch::fingerprint() const {
                           identity.changed_ns);
     }
   }
+  // A source that expires is something new, too: the others go on without it.
+  if (current_)
+    for (const auto& origin : current_->origins)
+      if (origin.issued_s && epoch_seconds(world_.clock.utc()) - *origin.issued_s > ocean::kExpiredAfter)
+        text += "\n" + origin.name + " has expired";
   return text;
 }
 
@@ -91,7 +100,8 @@ OceanOrder ForecastWatch::order() const {
           mission_->start_time.value_or(world_.clock.utc()),
           mission_->start,
           cache_,
-          settle_};
+          settle_,
+          epoch_seconds(world_.clock.utc())};
 }
 
 void ForecastWatch::load(std::string seen) {
@@ -100,7 +110,7 @@ void ForecastWatch::load(std::string seen) {
   try_again_.reset();
   if (seen != seen_) said_.clear();
   seen_ = std::move(seen);
-  if (!cache_ && !mission_->currents.files.empty()) {
+  if (!cache_ && mission_->currents.has_files()) {
     auto cache = GridCache::open(world_.files, grids_);
     if (cache)
       cache_ = std::move(*cache);
@@ -123,7 +133,7 @@ void ForecastWatch::load(std::string seen) {
 /// A forecast of another time than ours, or nothing when it is one to use.
 std::optional<IngestFault> ForecastWatch::untimely(const OceanSource& ocean) const {
   const auto& facts = ocean.forecast.facts();
-  if (!facts.has_time || mission_->currents.outside_time == ocean::OutsideTime::cycle) return std::nullopt;
+  if (!facts.issued_s) return std::nullopt;
   const double now = epoch_seconds(world_.clock.utc());
   const auto at = [](double seconds) { return utc_text(instant_at(seconds)); };
   if (now > facts.last_s + kExpired_s)
@@ -180,6 +190,17 @@ void ForecastWatch::say_refused(const std::string& problem) {
   if (problem == said_) return;
   said_ = problem;
   handlers_.refused(problem);
+}
+
+double ForecastWatch::age_s() const {
+  const auto issued = current_ ? current_->forecast.facts().issued_s : std::nullopt;
+  return issued ? epoch_seconds(world_.clock.utc()) - *issued : 0;
+}
+
+std::optional<std::string> ForecastWatch::expired() const {
+  if (age_s() <= ocean::kExpiredAfter) return std::nullopt;
+  return fmt::format("the forecast {} is {:.1f} h old; planned on are at most {:.0f} h", current_->label(),
+                     age_s() / 3600, ocean::kExpiredAfter / 3600);
 }
 
 std::string ForecastWatch::in_use() const {

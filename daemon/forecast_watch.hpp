@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/ocean/freshness.hpp"
 #include "daemon/ocean_pool.hpp"
 
 namespace glidehelm::daemon {
@@ -42,10 +43,16 @@ class ForecastWatch {
   /// Whether a plan has to wait for the load under way: there is nothing to plan on yet, or time stands still meanwhile.
   [[nodiscard]] bool holds_up() const { return loading_ && (!current_ || world_.clock.simulated()); }
   [[nodiscard]] const std::string& problem() const { return problem_; }
+  /// Why the forecast in use is not planned on now: it is older than product.md 7 allows. None: it may be.
+  [[nodiscard]] std::optional<std::string> expired() const;
+  /// It may be planned on, but is old enough to be said so.
+  [[nodiscard]] bool old() const { return age_s() > ocean::kOldAfter; }
   /// "rtofs 2024-10-28T00:00:00Z (sha256 1a2b3c4d5e6f), 7.5 h old", or "none".
   [[nodiscard]] std::string in_use() const;
 
  private:
+  /// Of the forecast in use, as the verifier counts it; 0 when it does not age.
+  [[nodiscard]] double age_s() const;
   [[nodiscard]] std::string fingerprint() const;
   [[nodiscard]] OceanOrder order() const;
   void load(std::string seen);

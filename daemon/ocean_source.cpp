@@ -7,6 +7,7 @@
 
 #include "core/base/utc.hpp"
 #include "core/chart/coast.hpp"
+#include "core/ocean/freshness.hpp"
 #include "daemon/ingest_client.hpp"
 
 namespace glidehelm::daemon {
@@ -84,44 +85,186 @@ std::shared_ptr<const void> remover(const std::string& path, world::Files& files
                                      }};
 }
 
-OceanResult assemble(const OceanOrder& order, std::unique_ptr<LoadedGrid> grid, world::Files& files) {
+/// One set of files that was read, and what it counts for.
+struct Read {
+  mission::CurrentSource source;  ///< without a name: the only one
+  std::shared_ptr<LoadedGrid> grid;
+};
+
+/// The order of one source alone.
+OceanOrder order_of(const OceanOrder& order, const mission::CurrentSource& source) {
+  OceanOrder one = order;
+  static_cast<mission::CurrentFiles&>(one.mission.currents) = source;
+  return one;
+}
+
+ocean::ForecastSource forecast_source(const Read& read, bool has_coast) {
+  const auto& source = read.source;
+  const auto& view = read.grid->view;
+  ocean::ForecastSource result{source.name,
+                               view,
+                               {source.outside_time, source.interpolation, source.coastal_fill_cells, !has_coast},
+                               read.grid,
+                               ocean::SourceRegion{source.region}};
+  const double reference = std::isnan(view.facts.reference_s) ? view.axes.times_s.front() : view.facts.reference_s;
+  if (source.from) result.from_s = reference + source.from->count();
+  if (source.to) result.to_s = reference + source.to->count();
+  return result;
+}
+
+std::optional<verify::InputFile> input_file(const LoadedGrid& grid) {
+  const auto bytes = grid.mapping->bytes();
+  const auto identity =
+      verify::grid_identity({reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), verify::kGridHead)});
+  if (!identity || grid.path.empty()) return std::nullopt;
+  return verify::InputFile{grid.path, *identity};
+}
+
+/// Sources that have expired are left out while another one remains.
+std::vector<std::string> leave_out_expired(const OceanOrder& order, std::vector<Read>& reads) {
+  std::vector<std::string> notes;
+  if (!order.now_s) return notes;
+  const auto age = [&](const Read& read) {
+    const auto issued = ocean::issued_s(read.grid->view.axes, read.grid->view.facts, read.source.outside_time);
+    return issued ? *order.now_s - *issued : 0;
+  };
+  const auto fresh = [&](const Read& read) { return age(read) <= ocean::kExpiredAfter; };
+  if (std::none_of(reads.begin(), reads.end(), fresh)) return notes;
+  for (const auto& read : reads)
+    if (!fresh(read))
+      notes.push_back(fmt::format("source '{}' is left out: it is {:.1f} h old, allowed are {:.0f} h", read.source.name,
+                                  age(read) / 3600, ocean::kExpiredAfter / 3600));
+  std::erase_if(reads, [&](const Read& read) { return !fresh(read); });
+  return notes;
+}
+
+OceanResult assemble(const OceanOrder& order, std::vector<Read> reads, world::Files& files) {
   const auto box = box_of(order);
   auto formulas = formulas_of(order, box);
   if (!formulas) return unexpected(formulas.error());
   const auto& m = order.mission;
-  ocean::GriddedOptions options{m.currents.outside_time, m.currents.interpolation, m.currents.coastal_fill_cells,
-                                !order.has_coast};
-  std::optional<verify::InputFile> input;
-  std::vector<std::string> sources;
-  std::shared_ptr<const void> grid_file;
-  std::optional<Sha256> key;
-  std::vector<LeftOut> left_out;
-  bool try_again = false;
-  std::vector<std::string> notes;
-  auto forecast = [&]() -> Expected<ocean::Forecast, ocean::ForecastError> {
-    if (!grid) return ocean::Forecast::prepare(*formulas);
-    sources = grid->files;
-    const auto bytes = grid->mapping->bytes();
-    const auto identity =
-        verify::grid_identity({reinterpret_cast<const char*>(bytes.data()), std::min(bytes.size(), verify::kGridHead)});
-    if (identity && !grid->path.empty()) input = verify::InputFile{grid->path, *identity};
-    if (grid->hold)
-      grid_file = grid->hold;
-    else if (!grid->path.empty())
-      grid_file = remover(grid->path, files);
-    key = grid->key;
-    left_out = grid->left_out;
-    try_again = grid->try_again;
-    notes = grid->notes;
-    const auto profile =
-        ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
-    const std::shared_ptr<LoadedGrid> owner{std::move(grid)};
-    return ocean::Forecast::prepare(owner->view, profile, options, owner, *formulas);
-  }();
+  const bool composite = !m.currents.sources.empty();
+  auto notes = leave_out_expired(order, reads);
+  std::vector<ocean::ForecastSource> sources;
+  for (const auto& read : reads) sources.push_back(forecast_source(read, order.has_coast));
+  const ocean::Seams seams{m.currents.blend, m.currents.join};
+  const auto profile =
+      ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
+  auto forecast = sources.empty() ? ocean::Forecast::prepare(*formulas)
+                                  : ocean::Forecast::prepare(sources, seams, profile, *formulas);
   if (!forecast) return unexpected(forecast.error().message());
-  return std::make_shared<const OceanSource>(OceanSource{std::move(forecast).value(), input, options,
-                                                         m.currents.analytic, order.start, box, sources, grid_file, key,
-                                                         left_out, try_again, notes});
+
+  OceanSource ocean{std::move(forecast).value(), {}, {}, m.currents.analytic, order.start, box, {}, {}};
+  ocean.options = {m.currents.outside_time, m.currents.interpolation, m.currents.coastal_fill_cells, !order.has_coast};
+  ocean.notes = std::move(notes);
+  ocean.seams = seams;
+  auto holds = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+  for (std::size_t k = 0; k < reads.size(); ++k) {
+    const auto& grid = *reads[k].grid;
+    const auto& source = sources[k];
+    const auto input = input_file(grid);
+    if (!composite) {
+      ocean.grid = input;
+      ocean.key = grid.key;
+    } else if (input) {
+      ocean.sources.push_back(
+          {source.name, *input, source.options, reads[k].source.region, source.from_s, source.to_s});
+    }
+    if (composite)
+      ocean.origins.push_back(
+          {source.name, grid.key, ocean::issued_s(grid.view.axes, grid.view.facts, source.options.outside_time)});
+    ocean.files.insert(ocean.files.end(), grid.files.begin(), grid.files.end());
+    ocean.left_out.insert(ocean.left_out.end(), grid.left_out.begin(), grid.left_out.end());
+    ocean.notes.insert(ocean.notes.end(), grid.notes.begin(), grid.notes.end());
+    ocean.try_again = ocean.try_again || grid.try_again;
+    holds->push_back(grid.hold ? grid.hold : grid.path.empty() ? nullptr : remover(grid.path, files));
+  }
+  ocean.grid_file = std::move(holds);
+  if (composite) {
+    std::string keys;
+    for (const auto& origin : ocean.origins) keys += origin.key ? origin.name + " " + origin.key->hex() + "\n" : "";
+    if (!keys.empty()) ocean.key = Sha256::of(keys);
+  }
+  return std::make_shared<const OceanSource>(std::move(ocean));
+}
+
+/// Which files, and how they are read.
+std::string name_of(const OceanOrder& order) {
+  std::string name = recipe_of(ingest_options(order));
+  for (const auto& pattern : order.mission.currents.files) name += "\n" + pattern;
+  return name;
+}
+
+/// The grid that was accepted last for one set of files, whatever the files are now.
+std::shared_ptr<LoadedGrid> accepted_grid(const OceanOrder& order) {
+  if (!order.cache) return nullptr;
+  const auto key = order.cache->accepted(name_of(order));
+  std::string damage;
+  auto mapped = key ? order.cache->take(*key, damage) : nullptr;
+  if (!mapped) return nullptr;
+  auto grid = std::make_shared<LoadedGrid>();
+  for (const auto& source : mapped->view.facts.sources) grid->files.push_back(source.name);
+  grid->mapping = std::move(mapped->mapping);
+  grid->view = std::move(mapped->view);
+  grid->path = std::move(mapped->path);
+  grid->hold = std::move(mapped->hold);
+  grid->key = key;
+  return grid;
+}
+
+/// Every set of files of an order; one without a name where it has no `sources`.
+std::vector<mission::CurrentSource> sets_of(const OceanOrder& order) {
+  if (!order.mission.currents.sources.empty()) return order.mission.currents.sources;
+  if (order.mission.currents.files.empty()) return {};
+  return {mission::CurrentSource{order.mission.currents, {}, {}, {}, {}}};
+}
+
+/// Numbers that are no field to plan on stay so until the files change.
+OceanOutcome outcome(OceanResult assembled) {
+  if (!assembled) return unexpected(IngestFault{assembled.error(), false});
+  return std::move(*assembled);
+}
+
+/// Sources that are read one after the other; what one of them lacks the others make up for.
+struct Gathering {
+  OceanOrder order;
+  std::vector<mission::CurrentSource> sets;
+  std::vector<Read> reads{};
+  std::optional<IngestFault> fault{};  ///< of the first set that was not read
+  std::vector<LeftOut> left_out{};
+
+  void take(const mission::CurrentSource& set, IngestOutcome grid) {
+    if (grid) {
+      reads.push_back({set, std::move(grid).value()});
+      return;
+    }
+    auto why = grid.error();
+    if (!set.name.empty()) why.what = "source '" + set.name + "': " + why.what;
+    fault = fault ? IngestFault{fault->what, fault->passing || why.passing} : why;
+    if (set.name.empty()) return;
+    left_out.push_back({set.name, why.what});
+    if (auto last = accepted_grid(order_of(order, set))) reads.push_back({set, std::move(last)});
+  }
+  [[nodiscard]] OceanOutcome finish(world::Files& files) {
+    if (reads.empty() && fault) return unexpected(*fault);
+    if (!reads.empty() && !left_out.empty()) {
+      auto& grid = *reads.front().grid;
+      grid.left_out.insert(grid.left_out.end(), left_out.begin(), left_out.end());
+      grid.try_again = grid.try_again || fault->passing;
+    }
+    return outcome(assemble(order, std::move(reads), files));
+  }
+};
+
+void gather(const std::shared_ptr<Gathering>& all, std::size_t next, const world::World& world,
+            std::function<void(OceanOutcome)> then) {
+  if (next == all->sets.size()) return then(all->finish(world.files));
+  const auto order = order_of(all->order, all->sets[next]);
+  ingest_files_async(order.mission.currents.files, ingest_options(order), world,
+                     [all, next, world, then = std::move(then)](IngestOutcome grid) {
+                       all->take(all->sets[next], std::move(grid));
+                       gather(all, next + 1, world, then);
+                     });
 }
 
 }  // namespace
@@ -133,69 +276,51 @@ std::string OceanSource::label() const {
   return text + " (sha256 " + facts.provenance.hex().substr(0, 12) + ")";
 }
 
+void put_ocean(const OceanSource& ocean, verify::VerifyRequest& request) {
+  request.grid = ocean.grid;
+  request.grid_options = ocean.options;
+  request.sources = ocean.sources;
+  request.seams = ocean.seams;
+  request.analytic = ocean.analytic;
+  request.analytic_start = ocean.analytic_start;
+  request.analytic_box = ocean.analytic_box;
+}
+
 OceanResult load_ocean(const OceanOrder& order, world::World& world) {
-  if (order.mission.currents.files.empty()) return assemble(order, nullptr, world.files);
-  auto grid = ingest_files(order.mission.currents.files, ingest_options(order), world);
-  if (!grid) return unexpected(grid.error());
-  return assemble(order, std::move(grid).value(), world.files);
+  Gathering all{order, sets_of(order)};
+  for (const auto& set : all.sets) {
+    const auto one = order_of(order, set);
+    auto grid = ingest_files(one.mission.currents.files, ingest_options(one), world);
+    if (!grid) return unexpected(set.name.empty() ? grid.error() : "source '" + set.name + "': " + grid.error());
+    all.take(set, std::move(grid).value());
+  }
+  auto ocean = all.finish(world.files);
+  if (!ocean) return unexpected(ocean.error().what);
+  return std::move(ocean).value();
 }
-
-namespace {
-
-/// Numbers that are no field to plan on stay so until the files change.
-OceanOutcome outcome(OceanResult assembled) {
-  if (!assembled) return unexpected(IngestFault{assembled.error(), false});
-  return std::move(*assembled);
-}
-
-/// Which files, and how they are read.
-std::string name_of(const OceanOrder& order) {
-  std::string name = recipe_of(ingest_options(order));
-  for (const auto& pattern : order.mission.currents.files) name += "\n" + pattern;
-  return name;
-}
-
-}  // namespace
 
 void load_ocean_async(const OceanOrder& order, world::World& world, std::function<void(OceanOutcome)> then) {
-  if (order.mission.currents.files.empty()) {
-    world.net.post(
-        [order, then = std::move(then), &files = world.files] { then(outcome(assemble(order, nullptr, files))); });
-    return;
-  }
-  ingest_files_async(order.mission.currents.files, ingest_options(order), world,
-                     [order, then = std::move(then), &files = world.files](IngestOutcome grid) {
-                       if (!grid)
-                         then(unexpected(grid.error()));
-                       else
-                         then(outcome(assemble(order, std::move(grid).value(), files)));
-                     });
+  const auto all = std::make_shared<Gathering>(Gathering{order, sets_of(order)});
+  if (all->sets.empty())  // told from the loop, as an answer that was read would be
+    return world.net.post([all, then = std::move(then), &files = world.files] { then(all->finish(files)); });
+  gather(all, 0, world, std::move(then));
 }
 
 std::shared_ptr<const OceanSource> last_accepted(const OceanOrder& order, world::World& world) {
-  if (!order.cache || order.mission.currents.files.empty()) return nullptr;
-  const auto key = order.cache->accepted(name_of(order));
-  std::string damage;
-  auto mapped = key ? order.cache->take(*key, damage) : nullptr;
-  if (!mapped) return nullptr;
-  std::vector<std::string> files;
-  for (const auto& source : mapped->view.facts.sources) files.push_back(source.name);
-  auto grid = std::make_unique<LoadedGrid>(LoadedGrid{std::move(mapped->mapping),
-                                                      std::move(mapped->view),
-                                                      std::move(mapped->path),
-                                                      std::move(files),
-                                                      std::move(mapped->hold),
-                                                      key,
-                                                      {},
-                                                      false,
-                                                      {}});
-  auto ocean = assemble(order, std::move(grid), world.files);
+  Gathering all{order, sets_of(order)};
+  for (const auto& set : all.sets)
+    if (auto grid = accepted_grid(order_of(order, set))) all.reads.push_back({set, std::move(grid)});
+  if (all.reads.empty()) return nullptr;
+  auto ocean = all.finish(world.files);
   return ocean ? *ocean : nullptr;
 }
 
 void accept_ocean(const OceanOrder& order, const OceanSource& ocean) {
   if (!order.cache || !ocean.key) return;
-  order.cache->accept(name_of(order), *ocean.key);
+  if (ocean.origins.empty()) order.cache->accept(name_of(order), *ocean.key);
+  for (const auto& source : order.mission.currents.sources)
+    for (const auto& origin : ocean.origins)
+      if (origin.name == source.name && origin.key) order.cache->accept(name_of(order_of(order, source)), *origin.key);
   static_cast<void>(order.cache->save());  // without it a restart reads the files again
 }
 

@@ -17,7 +17,7 @@ namespace glidehelm::daemon {
 /// A forecast as planners take it, and as the verifier finds it again. Immutable; a running plan keeps the one it began with.
 struct OceanSource {
   ocean::Forecast forecast;
-  std::optional<verify::InputFile> grid;  ///< the flat grid, by name and identity
+  std::optional<verify::InputFile> grid;  ///< the flat grid, by name and identity; of several see `sources`
   ocean::GriddedOptions options;
   std::vector<ocean::AnalyticSpec> analytic;
   Instant analytic_start;
@@ -27,8 +27,17 @@ struct OceanSource {
   std::shared_ptr<const void> grid_file;
   std::optional<Sha256> key{};  ///< with a cache: which grid it is
   std::vector<LeftOut> left_out{};
-  bool try_again{};                  ///< a file was left out for a reason that passes
-  std::vector<std::string> notes{};  ///< what an operator may want to know of the loading
+  bool try_again{};                           ///< a file was left out for a reason that passes
+  std::vector<std::string> notes{};           ///< what an operator may want to know of the loading
+  std::vector<verify::SourceFile> sources{};  ///< of `currents.sources`, in order of trust
+  ocean::Seams seams{};
+  /// Of each of `sources`: which grid it is in the cache, and from when it ages.
+  struct Origin {
+    std::string name;
+    std::optional<Sha256> key;
+    std::optional<double> issued_s;
+  };
+  std::vector<Origin> origins{};
 
   /// "rtofs 2024-10-28T00:00:00Z (sha256 1a2b3c4d5e6f)": provenance in one line.
   [[nodiscard]] std::string label() const;
@@ -45,7 +54,11 @@ struct OceanOrder {
   std::optional<GeoPoint> from;
   std::shared_ptr<GridCache> cache{};  ///< async only
   Seconds settle{};                    ///< how long a file must have been left alone
+  /// Epoch second at which a source that has expired is left out while another one remains; none: all are kept.
+  std::optional<double> now_s{};
 };
+/// What of the ocean a verifier opens itself.
+void put_ocean(const OceanSource& ocean, verify::VerifyRequest& request);
 /// Blocks: for the command line.
 OceanResult load_ocean(const OceanOrder& order, world::World& world);
 using OceanOutcome = Expected<std::shared_ptr<const OceanSource>, IngestFault>;

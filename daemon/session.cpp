@@ -160,7 +160,7 @@ void Session::follow_mission() {
     auto chart = load_chart(*mission, desk_.world.files);
     if (chart) {
       chart_ = std::move(chart).value();
-      if (!chart_->chart.has_coast() && mission->currents.files.empty())
+      if (!chart_->chart.has_coast() && !mission->currents.has_files())
         desk_.log.warn(entry_.name, "no coastline (safety.coast) and no forecast files: nothing is land");
     } else {
       chart_.reset();

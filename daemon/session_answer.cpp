@@ -46,6 +46,11 @@ void Session::plan_waiting() {
                                 !chart_ ? "the coast file cannot be read" : "no forecast: " + forecast_.problem()});
     return;
   }
+  if (const auto expired = forecast_.expired()) {
+    feed(mission::PlanningEnded{request.id, *expired});
+    return;
+  }
+  if (forecast_.old()) desk_.log.warn(entry_.name, "the forecast is old: " + forecast_.in_use());
   ++pending_;
   auto& net = desk_.world.net;
   const auto post = [this, alive = alive_, &net](std::function<void()> then) {
@@ -83,12 +88,7 @@ verify::VerifyRequest Session::verify_request(const mission::Verify& e) const {
   request.dossier = e.dossier;
   const auto asked = asked_.find(e.request);
   if (asked == asked_.end()) return request;
-  const auto& ocean = *asked->second.ocean;
-  request.grid = ocean.grid;
-  request.grid_options = ocean.options;
-  request.analytic = ocean.analytic;
-  request.analytic_start = ocean.analytic_start;
-  request.analytic_box = ocean.analytic_box;
+  put_ocean(*asked->second.ocean, request);
   request.coast = asked->second.chart->coast;
   request.keep_in = asked->second.chart->keep_in;
   request.keep_out = asked->second.chart->keep_out;

@@ -24,10 +24,9 @@ using ocean::AnalyticSpec;
 using ocean::Interpolation;
 using ocean::OutsideTime;
 
-/// `currents`: files (shell patterns) or a sum of analytic fields.
-struct Currents {
-  std::vector<std::string> files;
-  std::vector<AnalyticSpec> analytic;
+/// Files of currents and how they are read.
+struct CurrentFiles {
+  std::vector<std::string> files;  ///< shell patterns, addresses
   OutsideTime outside_time{OutsideTime::hold};
   Interpolation interpolation{Interpolation::linear};
   std::string east_variable, north_variable;  ///< empty: recognised
@@ -48,9 +47,30 @@ struct Currents {
   };
   std::optional<SLevels> s_levels;
   double coastal_fill_cells{1.5};
+  friend bool operator==(const CurrentFiles&, const CurrentFiles&) = default;
+};
+
+/// One of `currents.sources`.
+struct CurrentSource : CurrentFiles {
+  std::string name;
+  std::vector<GeoPoint> region;  ///< corners; empty: everywhere
+  std::optional<Seconds>
+      from;                   ///< from_h: of the reference time (the first field where none is named); none: its begin
+  std::optional<Seconds> to;  ///< to_h; none: its end
+  friend bool operator==(const CurrentSource&, const CurrentSource&) = default;
+};
+
+/// `currents`: files, or sources in order of trust, and a sum of analytic fields.
+struct Currents : CurrentFiles {
+  std::vector<CurrentSource> sources;  ///< most trusted first; then `files` is empty
+  Metres blend{20'000};                ///< blend_km
+  Seconds join{6 * 3600.0};            ///< join_h
+  std::vector<AnalyticSpec> analytic;
   bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
   Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …
   Seconds correction_time{24 * 3600.0};  ///< correction_time_h: … and exp(−|t|/T)
+  /// There is something to read, not only formulas.
+  [[nodiscard]] bool has_files() const { return !files.empty() || !sources.empty(); }
   friend bool operator==(const Currents&, const Currents&) = default;
 };
 

@@ -1,36 +1,46 @@
 #include "core/ocean/forecast.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
 #include <utility>
 
+#include "core/ocean/freshness.hpp"
+
 namespace glidehelm::ocean {
 
 /// The fields themselves; built in place, because the sums refer to their neighbours.
 struct Forecast::Parts {
-  std::optional<GriddedField> dive, surface, full;
+  /// One of the three fields: of one source or of several, with formulas or without.
+  struct Role {
+    std::optional<GriddedField> one;
+    std::optional<CompositeField> many;
+    std::optional<FieldSum> sum;
+    /// The gridded part, if there is one.
+    [[nodiscard]] std::optional<FieldRef> gridded() const {
+      if (many) return FieldRef{*many};
+      if (one) return FieldRef{*one};
+      return std::nullopt;
+    }
+  };
+  Role dive, surface, full;
   std::vector<AnalyticField> analytic;
-  std::optional<FieldSum> dive_sum, surface_sum, full_sum;
   ForecastFacts facts;
 
   /// The gridded field, or it and the analytic ones, or these alone.
-  [[nodiscard]] FieldRef pick(const std::optional<GriddedField>& gridded, const std::optional<FieldSum>& sum) const {
-    if (sum) return *sum;
-    if (gridded) return *gridded;
+  [[nodiscard]] FieldRef pick(const Role& role) const {
+    if (role.sum) return *role.sum;
+    if (const auto gridded = role.gridded()) return *gridded;
     return analytic.front();
   }
   void add_up() {
-    const auto sum_of = [this](const std::optional<GriddedField>& gridded) -> std::optional<FieldSum> {
-      if (analytic.size() + (gridded ? 1 : 0) < 2) return std::nullopt;
+    for (auto* role : {&dive, &surface, &full}) {
       std::vector<FieldRef> refs;
-      if (gridded) refs.emplace_back(*gridded);
+      if (const auto gridded = role->gridded()) refs.push_back(*gridded);
       for (const auto& field : analytic) refs.emplace_back(field);
-      return FieldSum{std::move(refs)};
-    };
-    dive_sum = sum_of(dive);
-    surface_sum = sum_of(surface);
-    full_sum = sum_of(full);
+      if (refs.size() > 1) role->sum.emplace(std::move(refs));
+    }
   }
 };
 
@@ -79,48 +89,117 @@ std::optional<ForecastError> check_speed(double fastest, std::vector<std::string
   return std::nullopt;
 }
 
+/// The three fields of one source.
+struct Prepared {
+  GriddedField dive, surface, full;
+};
+
+Expected<Prepared, ForecastError> prepare_source(const ForecastSource& source, const DiveProfile& profile) {
+  GriddedField full{source.grid, source.options, source.keep_alive};
+  if (source.grid.axes.depths_m.size() == 1) return Prepared{full, full, full};
+  Grid mean = depth_average(source.grid, profile);
+  if (statistics_of(view_of(mean)).wet_fraction == 0)
+    return unexpected(ForecastError{"no column has a current within the dive"});
+  return Prepared{GriddedField{std::move(mean), source.options}, full.shallowest(), full};
+}
+
+/// The facts of one source; a warning names it where there are several.
+std::optional<ForecastError> add_facts(const ForecastSource& source, const GriddedField& full, bool several,
+                                       ForecastFacts& facts) {
+  const auto& grid = source.grid;
+  const bool first = facts.name.empty();
+  std::vector<std::string> warnings = grid.facts.warnings;
+  const auto statistics = statistics_of(grid);
+  if (statistics.wet_fraction == 0) return ForecastError{"no node has a current"};
+  if (auto error = check_speed(statistics.fastest, warnings)) return error;
+  const auto& options = source.options;
+  const auto box = full.coverage();
+  if (options.mask_is_land) warnings.emplace_back("no coastline: the model's mask is taken as land");
+  if (options.outside_time == OutsideTime::cycle && grid.axes.has_time && box.last_s - box.first_s < kTidalCycle)
+    warnings.emplace_back("the forecast is shorter than 24.84 h: its last field holds instead of a tidal cycle");
+  for (const auto& warning : warnings)
+    facts.warnings.push_back(several ? "source '" + source.name + "': " + warning : warning);
+  facts.name += (first ? "" : " over ") + grid.facts.cycle;
+  if (std::isnan(facts.reference_s)) facts.reference_s = grid.facts.reference_s;
+  if (const auto issued = issued_s(grid.axes, grid.facts, options.outside_time))
+    facts.issued_s = std::min(*issued, facts.issued_s.value_or(*issued));
+  facts.has_time = facts.has_time || grid.axes.has_time;
+  facts.levels = std::max(facts.levels, grid.axes.depths_m.size());
+  return std::nullopt;
+}
+
+/// One name for all that went in: of a single grid its own.
+Sha256 provenance_of(const std::vector<ForecastSource>& sources, const Seams& seams,
+                     const std::vector<AnalyticField>& added) {
+  const auto& only = sources.front();
+  std::string all = only.grid.provenance.hex();
+  if (sources.size() > 1 || !only.name.empty()) {
+    all = "composite";
+    append(all, seams.blend.si());
+    append(all, seams.join.count());
+    for (const auto& source : sources) {
+      all += "\n" + source.grid.provenance.hex() + " " + source.name;
+      append(all, source.from_s);
+      append(all, source.to_s);
+      for (const auto& corner : source.region.corners()) {
+        append(all, corner.lat.radians());
+        append(all, corner.lon.radians());
+      }
+    }
+  } else if (added.empty()) {
+    return only.grid.provenance;
+  }
+  for (const auto& field : added) all += "\n" + canonical(field);
+  return Sha256::of(all);
+}
+
 }  // namespace
 
 Expected<Forecast, ForecastError> Forecast::prepare(const GridView& grid, const DiveProfile& profile,
                                                     const GriddedOptions& options,
                                                     std::shared_ptr<const void> keep_alive,
                                                     const std::vector<AnalyticField>& added) {
-  auto parts = std::make_shared<Parts>();
-  parts->full.emplace(grid, options, std::move(keep_alive));
-  if (grid.axes.depths_m.size() == 1) {
-    parts->dive = parts->full;
-    parts->surface = parts->full;
-  } else {
-    parts->surface = parts->full->shallowest();
-    Grid mean = depth_average(grid, profile);
-    if (statistics_of(view_of(mean)).wet_fraction == 0)
-      return unexpected(ForecastError{"no column has a current within the dive"});
-    parts->dive.emplace(std::move(mean), options);
-  }
-  auto& facts = parts->facts;
-  facts.warnings = grid.facts.warnings;
-  const auto statistics = statistics_of(grid);
-  if (statistics.wet_fraction == 0) return unexpected(ForecastError{"no node has a current"});
-  if (auto error = check_speed(statistics.fastest, facts.warnings)) return unexpected(std::move(*error));
+  return prepare({ForecastSource{{}, grid, options, std::move(keep_alive)}}, Seams{}, profile, added);
+}
 
-  const Coverage box = parts->full->coverage();
-  for (const auto& field : added) parts->analytic.push_back(field.within({box.south, box.north, box.west, box.east}));
-  facts.name = grid.facts.cycle;
-  facts.reference_s = grid.facts.reference_s;
+Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<ForecastSource>& sources, const Seams& seams,
+                                                    const DiveProfile& profile,
+                                                    const std::vector<AnalyticField>& added) {
+  if (sources.empty()) return unexpected(ForecastError{"no source was given"});
+  const auto& only = sources.front();
+  const bool several = sources.size() > 1;
+  const bool limited = !only.region.everywhere() || only.from_s > -1e17 || only.to_s < 1e17;
+  auto parts = std::make_shared<Parts>();
+  auto& facts = parts->facts;
+  std::vector<CompositeSource> dive, surface, full;
+  for (const auto& source : sources) {
+    const auto wrong = [&](const ForecastError& error) {
+      return unexpected(ForecastError{several ? "source '" + source.name + "': " + error.what : error.what});
+    };
+    auto fields = prepare_source(source, profile);
+    if (!fields) return wrong(fields.error());
+    if (auto error = add_facts(source, fields->full, several, facts)) return wrong(*error);
+    if (!source.name.empty()) facts.sources.push_back(source.name);
+    dive.push_back({source.name, fields->dive, source.region, source.from_s, source.to_s});
+    surface.push_back({source.name, fields->surface, source.region, source.from_s, source.to_s});
+    full.push_back({source.name, fields->full, source.region, source.from_s, source.to_s});
+  }
+  if (several || limited) {
+    parts->dive.many.emplace(std::move(dive), seams);
+    parts->surface.many.emplace(std::move(surface), seams);
+    parts->full.many.emplace(std::move(full), seams);
+    for (auto& fault : parts->full.many->faults()) facts.warnings.push_back(std::move(fault));
+  } else {
+    parts->dive.one = dive.front().field;
+    parts->surface.one = surface.front().field;
+    parts->full.one = full.front().field;
+  }
+  const Coverage box = parts->full.gridded()->coverage();
   facts.first_s = box.first_s;
   facts.last_s = box.last_s;
-  facts.has_time = grid.axes.has_time;
-  facts.levels = grid.axes.depths_m.size();
-  facts.provenance = grid.provenance;
-  if (!added.empty()) {
-    facts.name += " + " + names_of(added);
-    std::string all = grid.provenance.hex();
-    for (const auto& field : added) all += "\n" + canonical(field);
-    facts.provenance = Sha256::of(all);
-  }
-  if (options.mask_is_land) facts.warnings.emplace_back("no coastline: the model's mask is taken as land");
-  if (options.outside_time == OutsideTime::cycle && facts.has_time && facts.last_s - facts.first_s < kTidalCycle)
-    facts.warnings.emplace_back("the forecast is shorter than 24.84 h: its last field holds instead of a tidal cycle");
+  for (const auto& field : added) parts->analytic.push_back(field.within({box.south, box.north, box.west, box.east}));
+  if (!added.empty()) facts.name += " + " + names_of(added);
+  facts.provenance = provenance_of(sources, seams, added);
   parts->add_up();
   return Forecast{std::move(parts)};
 }
@@ -137,10 +216,12 @@ Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<AnalyticFi
   return Forecast{std::move(parts)};
 }
 
-Ocean Forecast::ocean() const {
-  return {parts_->pick(parts_->dive, parts_->dive_sum), parts_->pick(parts_->surface, parts_->surface_sum)};
+Ocean Forecast::ocean() const { return {parts_->pick(parts_->dive), parts_->pick(parts_->surface)}; }
+FieldRef Forecast::full() const { return parts_->pick(parts_->full); }
+std::vector<double> Forecast::shares(GeoPoint p, double t_s) const {
+  if (parts_->dive.many) return parts_->dive.many->weights(p, Depth{}, t_s);
+  return std::vector<double>(parts_->dive.one ? 1 : 0, 1.0);
 }
-FieldRef Forecast::full() const { return parts_->pick(parts_->full, parts_->full_sum); }
 const ForecastFacts& Forecast::facts() const { return parts_->facts; }
 
 Seconds Forecast::age(Instant now) const {

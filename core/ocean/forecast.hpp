@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/ocean/analytic.hpp"
+#include "core/ocean/composite.hpp"
 #include "core/ocean/depth_average.hpp"
 #include "core/ocean/gridded.hpp"
 
@@ -15,9 +17,11 @@ struct ForecastFacts {
   std::string name;                                              ///< source and cycle, or the analytic kinds
   double reference_s{std::numeric_limits<double>::quiet_NaN()};  ///< forecast reference time; NaN when not named
   double first_s{-1e18}, last_s{1e18};                           ///< epoch seconds of the first and last field
+  std::optional<double> issued_s;                                ///< from when it ages, see freshness.hpp
   bool has_time{};                                               ///< false: the same at every instant
   std::size_t levels{1};                                         ///< depth levels
   Sha256 provenance;                                             ///< over everything that went in
+  std::vector<std::string> sources;                              ///< names, most trusted first; empty without `sources`
   std::vector<std::string> warnings;
 };
 
@@ -26,6 +30,16 @@ struct ForecastError {
   std::string what;
   [[nodiscard]] const std::string& message() const { return what; }
   friend bool operator==(const ForecastError&, const ForecastError&) = default;
+};
+
+/// One source of a forecast: a grid and what it counts for.
+struct ForecastSource {
+  std::string name;  ///< empty: the only one
+  GridView grid;
+  GriddedOptions options;
+  std::shared_ptr<const void> keep_alive;  ///< owns the grid's bytes
+  SourceRegion region{};
+  double from_s{-1e18}, to_s{1e18};  ///< epoch seconds
 };
 
 /// One forecast, prepared for planning: the mean over the dive profile that moves a diving glider, the shallowest current
@@ -43,6 +57,11 @@ class Forecast {
                                                    const GriddedOptions& options,
                                                    std::shared_ptr<const void> keep_alive,
                                                    const std::vector<AnalyticField>& added = {});
+  /// From sources in order of trust (at least one), one over the other as CompositeField has it; one that counts everywhere
+  /// and always is as above. What is wrong with them taken together is a warning.
+  static Expected<Forecast, ForecastError> prepare(const std::vector<ForecastSource>& sources, const Seams& seams,
+                                                   const DiveProfile& profile,
+                                                   const std::vector<AnalyticField>& added = {});
   /// From analytic fields alone (at least one).
   static Expected<Forecast, ForecastError> prepare(const std::vector<AnalyticField>& fields);
 
@@ -50,6 +69,8 @@ class Forecast {
   [[nodiscard]] Ocean ocean() const;
   /// With depth where the source has it: what the verifier takes.
   [[nodiscard]] FieldRef full() const;
+  /// The share of each source in the dive mean there, in the order of trust: {1} for a forecast of one, empty for formulas.
+  [[nodiscard]] std::vector<double> shares(GeoPoint p, double t_s) const;
   [[nodiscard]] const ForecastFacts& facts() const;
   /// Time since the forecast's reference time, or since its first field when none is named; 0 for fields without time.
   [[nodiscard]] Seconds age(Instant now) const;

@@ -4,7 +4,8 @@
 
 namespace glidehelm::safety {
 
-Verdict judge(const Dossier& dossier, ocean::FieldRef forecast, const chart::Chart& chart) {
+Verdict judge(const Dossier& dossier, ocean::FieldRef forecast, const chart::Chart& chart,
+              std::optional<double> issued_s) {
   std::optional<ocean::CorrectedField> corrected;
   if (dossier.correction && dossier.correction->plausible()) corrected.emplace(forecast, *dossier.correction);
   const ocean::FieldRef full = corrected ? ocean::FieldRef{*corrected} : forecast;
@@ -12,7 +13,7 @@ Verdict judge(const Dossier& dossier, ocean::FieldRef forecast, const chart::Cha
   std::string why;
   std::optional<Flight> flight;
   if (list && can_be_flown(dossier, why)) flight = fly(order_for(dossier, *list), full);
-  const Evidence evidence{dossier, list, flight, full, chart};
+  const Evidence evidence{dossier, list, flight, full, chart, issued_s};
 
   Verdict verdict;
   verdict.of = Sha256::of(dossier.file_bytes);

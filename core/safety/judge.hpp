@@ -88,8 +88,10 @@ struct Verdict {
 };
 
 /// Judges the bytes of `dossier` in the given ocean (3-D where the field has depths) and chart. Never throws on input;
-/// takes at most a few hundred milliseconds. Everything unknown is refused.
-Verdict judge(const Dossier& dossier, ocean::FieldRef full, const chart::Chart& chart);
+/// takes at most a few hundred milliseconds. Everything unknown is refused. `issued_s`: epoch second from which the
+/// forecast behind `full` ages (ocean/freshness.hpp); none when it does not.
+Verdict judge(const Dossier& dossier, ocean::FieldRef full, const chart::Chart& chart,
+              std::optional<double> issued_s = std::nullopt);
 
 /// Bytes that passed. Only `accept` makes one, only this can be emitted: the type is the proof.
 class VerifiedFile {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/text.hpp"
+#include "core/ocean/freshness.hpp"
 #include "core/safety/margins.hpp"
 #include "core/safety/track_rules.hpp"
 
@@ -284,6 +285,14 @@ Margin judge_cover(const Evidence& e) {
   return m;
 }
 
+Margin judge_age(const Evidence& e) {
+  const double limit = ocean::kExpiredAfter / 3600;
+  if (!e.issued_s) return {"", true, kNoNumber, limit, "h", "the currents are not of one time"};
+  const double found = (e.dossier.judged_s - *e.issued_s) / 3600;
+  return {
+      "", found <= limit, found, limit, "h", sentence("the forecast is %.1f h old, allowed are %.0f h", found, limit)};
+}
+
 Margin judge_speed(const Evidence& e) {
   if (!e.flight) return not_judged("the list was not flown");
   const double limit = e.dossier.rules.refused_speed.si(), found = e.flight->fastest_current;
@@ -297,7 +306,7 @@ Margin judge_values(const Evidence& e) {
   return plain(finite, finite ? "every current met is a number" : "the forecast gave a current that is not a number");
 }
 
-constexpr std::array<Rule, 22> kRules{{{"0 dossier", judge_dossier},
+constexpr std::array<Rule, 23> kRules{{{"0 dossier", judge_dossier},
                                        {"4 name", judge_name},
                                        {"4 size", judge_size},
                                        {"4 format", judge_format},
@@ -317,6 +326,7 @@ constexpr std::array<Rule, 22> kRules{{{"0 dossier", judge_dossier},
                                        {"promise surfacing", judge_next_surfacing},
                                        {"promise arrival", judge_arrival},
                                        {"forecast cover", judge_cover},
+                                       {"forecast age", judge_age},
                                        {"forecast speed", judge_speed},
                                        {"forecast values", judge_values}}};
 

@@ -20,6 +20,7 @@ struct Evidence {
   const std::optional<Flight>& flight;
   ocean::FieldRef full;
   const chart::Chart& chart;
+  std::optional<double> issued_s{};  ///< epoch second from which the forecast ages; none when it does not
 };
 
 /// One rule: its stable identifier and the function that finds the margin (which leaves `Margin::rule` empty).
@@ -46,6 +47,7 @@ struct Evidence {
 /// | promise surfacing | re-flown to promised next surfacing                | ≤ 3 % of the stint, ≥ 20 m      | m       |
 /// | promise arrival   | re-flown against promised arrival                  | ≤ 2 % of the travel, ≥ 60 s     | s       |
 /// | forecast cover    | hours of forecast after the fix                    | ≥ second next surfacing         | h       |
+/// | forecast age      | hours since it was issued; NaN when it does not age | ≤ 72                           | h       |
 /// | forecast speed    | fastest current met                                | ≤ refused_speed                 | m/s     |
 /// | forecast values   | NaN (every current met is a number)                | NaN                             |         |
 struct Rule {

@@ -171,11 +171,7 @@ verify::VerifyRequest verify_request(const Case& c, const mission::Candidate& fo
   d.promise = found.promise;
   d.judged_s = p.start.fix_s;
   d.deadline_s = p.start.fix_s + c.mission.window_max.count();
-  v.grid = c.ocean->grid;
-  v.grid_options = c.ocean->options;
-  v.analytic = c.ocean->analytic;
-  v.analytic_start = c.ocean->analytic_start;
-  v.analytic_box = c.ocean->analytic_box;
+  daemon::put_ocean(*c.ocean, v);
   v.coast = c.chart->coast;
   v.keep_in = c.chart->keep_in;
   v.keep_out = c.chart->keep_out;

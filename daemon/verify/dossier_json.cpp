@@ -9,8 +9,14 @@ void members(InputFile& i, F&& f) {
   f("path", i.path), f("hash", i.hash);
 }
 template <class F>
+void members(SourceFile& s, F&& f) {
+  f("name", s.name), f("grid", s.grid), f("options", s.options), f("region", s.region);
+  f("from_s", s.from_s), f("to_s", s.to_s);
+}
+template <class F>
 void members(VerifyRequest& r, F&& f) {
-  f("dossier", r.dossier), f("grid", r.grid), f("grid_options", r.grid_options), f("analytic", r.analytic);
+  f("dossier", r.dossier), f("grid", r.grid), f("grid_options", r.grid_options);
+  f("sources", r.sources), f("seams", r.seams), f("analytic", r.analytic);
   f("analytic_start_ms", r.analytic_start), f("analytic_box", r.analytic_box), f("coast", r.coast);
   f("keep_in", r.keep_in), f("keep_out", r.keep_out);
 }

@@ -9,6 +9,7 @@
 #include "core/base/hash.hpp"
 #include "core/chart/chart.hpp"
 #include "core/ocean/analytic.hpp"
+#include "core/ocean/composite.hpp"
 #include "core/ocean/gridded.hpp"
 #include "core/safety/judge.hpp"
 
@@ -28,11 +29,23 @@ struct InputFile {
 std::optional<Sha256> grid_identity(std::string_view first_bytes);
 inline constexpr std::size_t kGridHead = 96;
 
-/// Everything one run of glidehelm-verify needs. At least one of `grid` and `analytic`; several fields add.
+/// One source of a composite field: a grid and what it counts for.
+struct SourceFile {
+  std::string name;
+  InputFile grid;
+  ocean::GriddedOptions options;
+  std::vector<GeoPoint> region;  ///< corners; empty: everywhere
+  double from_s{-1e18}, to_s{1e18};
+  friend bool operator==(const SourceFile&, const SourceFile&) = default;
+};
+
+/// Everything one run of glidehelm-verify needs. At least one of `grid`, `sources` and `analytic`; several fields add.
 struct VerifyRequest {
   safety::Dossier dossier;
   std::optional<InputFile> grid;
   ocean::GriddedOptions grid_options;
+  std::vector<SourceFile> sources;  ///< in order of trust, instead of `grid`
+  ocean::Seams seams;
   std::vector<ocean::AnalyticSpec> analytic;
   Instant analytic_start;  ///< t0 of specifications that name none
   ocean::Coverage analytic_box;

@@ -1,13 +1,17 @@
 #include "daemon/verify/judge_request.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "core/chart/coast.hpp"
 #include "core/ocean/analytic.hpp"
+#include "core/ocean/composite.hpp"
+#include "core/ocean/freshness.hpp"
 #include "core/ocean/grid_format.hpp"
 #include "core/ocean/gridded.hpp"
 
@@ -25,30 +29,54 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 
 /// The fields of a request, and what keeps their numbers alive.
 struct Waters {
-  std::unique_ptr<world::Mapping> grid_bytes;
+  std::vector<std::shared_ptr<const world::Mapping>> bytes;
   std::vector<ocean::GriddedField> grids;
+  std::optional<ocean::CompositeField> composite;
   std::vector<ocean::AnalyticField> formulas;
   std::vector<ocean::FieldRef> parts;
+  std::optional<double> issued_s;  ///< by the grids' own words, of the oldest
 };
 
-Expected<Done, InputProblem> open_grid(const VerifyRequest& request, world::Files& files, Waters& waters) {
-  const auto& input = *request.grid;
+Expected<ocean::GriddedField, InputProblem> open_grid(const InputFile& input, ocean::GriddedOptions options,
+                                                      bool has_coast, world::Files& files, Waters& waters) {
   auto mapping = files.map(input.path);
   if (!mapping) return problem(input.path, mapping.error().message());
-  waters.grid_bytes = *std::move(mapping);
-  const auto bytes = waters.grid_bytes->bytes();
+  waters.bytes.push_back(*std::move(mapping));
+  const auto bytes = waters.bytes.back()->bytes();
   if (grid_identity(as_text(bytes)) != input.hash) return problem(input.path, "is not the grid that was planned on");
   const auto view = ocean::open_grid(bytes);
   if (!view) return problem(input.path, view.error().message());
-  auto options = request.grid_options;
-  if (!request.coast) options.mask_is_land = true;
-  waters.grids.emplace_back(*view, options);
+  if (!has_coast) options.mask_is_land = true;
+  if (const auto issued = ocean::issued_s(view->axes, view->facts, options.outside_time))
+    waters.issued_s = std::min(*issued, waters.issued_s.value_or(*issued));
+  return ocean::GriddedField{*view, options};
+}
+
+Expected<Done, InputProblem> open_sources(const VerifyRequest& request, world::Files& files, Waters& waters) {
+  if (!(request.seams.blend.si() > 0 && request.seams.join.count() > 0))
+    return problem("request", "the seams between its sources have no width");
+  std::vector<ocean::CompositeSource> sources;
+  for (const auto& source : request.sources) {
+    if (!source.region.empty() && source.region.size() < 3)
+      return problem("source '" + source.name + "'", "has a region of fewer than three corners");
+    if (!(source.from_s <= source.to_s)) return problem("source '" + source.name + "'", "ends before it begins");
+    auto field = open_grid(source.grid, source.options, request.coast.has_value(), files, waters);
+    if (!field) return unexpected(field.error());
+    sources.push_back(
+        {source.name, std::move(field).value(), ocean::SourceRegion{source.region}, source.from_s, source.to_s});
+  }
+  waters.composite.emplace(std::move(sources), request.seams);
   return Done{};
 }
 
 Expected<Done, InputProblem> open_waters(const VerifyRequest& request, world::Files& files, Waters& waters) {
   if (request.grid) {
-    auto opened = open_grid(request, files, waters);
+    auto field = open_grid(*request.grid, request.grid_options, request.coast.has_value(), files, waters);
+    if (!field) return unexpected(field.error());
+    waters.grids.push_back(std::move(field).value());
+  }
+  if (!request.sources.empty()) {
+    auto opened = open_sources(request, files, waters);
     if (!opened) return opened;
   }
   for (const auto& spec : request.analytic) {
@@ -58,6 +86,7 @@ Expected<Done, InputProblem> open_waters(const VerifyRequest& request, world::Fi
   }
   // Views only now: the vectors above no longer grow.
   for (const auto& grid : waters.grids) waters.parts.emplace_back(grid);
+  if (waters.composite) waters.parts.emplace_back(*waters.composite);
   for (const auto& formula : waters.formulas) waters.parts.emplace_back(formula);
   if (waters.parts.empty()) return problem("request", "names neither a grid nor analytic currents");
   return Done{};
@@ -97,9 +126,9 @@ Expected<safety::Verdict, InputProblem> judge_request(const VerifyRequest& reque
   const auto sources = open_chart(request, files);
   if (!sources) return unexpected(sources.error());
   const chart::Chart chart{*sources};
-  if (waters.parts.size() == 1) return safety::judge(request.dossier, waters.parts.front(), chart);
+  if (waters.parts.size() == 1) return safety::judge(request.dossier, waters.parts.front(), chart, waters.issued_s);
   const ocean::FieldSum sum{waters.parts};
-  return safety::judge(request.dossier, sum, chart);
+  return safety::judge(request.dossier, sum, chart, waters.issued_s);
 }
 
 std::string explain(const safety::Verdict& verdict) {

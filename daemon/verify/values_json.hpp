@@ -15,6 +15,7 @@
 #include "core/base/hash.hpp"
 #include "core/chart/chart.hpp"
 #include "core/ocean/analytic.hpp"
+#include "core/ocean/composite.hpp"
 #include "core/ocean/gridded.hpp"
 #include "core/safety/judge.hpp"
 
@@ -239,6 +240,10 @@ void members(safety::Promise& p, F&& f) {
   f("points", p.points), f("next_surfacing", p.next_surfacing), f("list_arrival_s", p.list_arrival_s),
       f("goal", p.goal);
   f("goal_radius_m", p.goal_radius), f("radius_m", p.radius), f("at_end", p.at_end);
+}
+template <class F>
+void members(ocean::Seams& s, F&& f) {
+  f("blend_m", s.blend), f("join_s", s.join);
 }
 template <class F>
 void members(ocean::LocalCorrection& c, F&& f) {

@@ -164,7 +164,7 @@ TEST_CASE("mistakes under currents are named with their place") {
     Lines errors;
   };
   const auto row = GENERATE(values<Row>({
-      {"currents: {}\n", {"5:11 currents: no field; allowed: files: [PATTERN, …] or analytic: {…}"}},
+      {"currents: {}\n", {"5:11 currents: no field; allowed: files: [PATTERN, …], sources: [{…}, …] or analytic: {…}"}},
       {"currents: {files: []}\n",
        {"5:19 currents.files: a list of another length; found 0; allowed: a list of at least 1"}},
       {"currents: {files: a.nc}\n", {"5:19 currents.files: not a list; found a.nc; allowed: a list of at least 1"}},
@@ -172,8 +172,8 @@ TEST_CASE("mistakes under currents are named with their place") {
        {"5:11 currents: not a map of keys; found a.nc; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"}},
       {"currents: []\n", {"5:11 currents: a list of another length; found 0; allowed: a list of 1 to 16"}},
       {"currents: [{files: [a.nc]}, {files: [b.nc]}]\n",
-       {"5:29 currents[1]: a second set of files; allowed: all files in one list; the newest cycle wins where they "
-        "overlap"}},
+       {"5:29 currents[1]: a second set of files; allowed: all files in one list, the newest cycle wins where they "
+        "overlap; or sources: [{…}, …]"}},
       {"currents: {files: [a.nc], outside_time: freeze}\n",
        {"5:41 currents.outside_time: not one of the words; found freeze; allowed: hold, cycle, forbid"}},
       {"currents: {files: [a.nc], interpolation: bilinear}\n",
@@ -205,4 +205,61 @@ TEST_CASE("a parameter of another kind, a missing one and two meanings at once a
       errors("currents:\n  - {files: [a.nc], outside_time: hold}\n  - {outside_time: cycle,\n     analytic: {" +
              kScales + ", kind: stuart}}\n") ==
       Lines{"7:20 currents[1].outside_time: the fields of a list share one outside_time; currents[0] says otherwise"});
+}
+
+TEST_CASE("sources stand in order of trust, each with its files, its way of reading, its region and its lead times") {
+  const auto c = read(
+      "currents:\n"
+      "  blend_km: 30\n"
+      "  join_h: 12\n"
+      "  sources:\n"
+      "    - name: bay\n"
+      "      files: [/data/bay/*.nc]\n"
+      "      region: [{lat_deg: 28, lon_deg: -16}, {lat_deg: 28, lon_deg: -14}, {lat_deg: 30, lon_deg: -15}]\n"
+      "      to_h: 48\n"
+      "      interpolation: akima\n"
+      "    - {name: globe, files: [/data/globe.nc], outside_time: cycle, from_h: -24}\n");
+  CHECK(c.files.empty());
+  CHECK(c.has_files());
+  CHECK(c.blend == Metres{30'000});
+  CHECK(c.join == Seconds{12 * 3600.0});
+  REQUIRE(c.sources.size() == 2);
+  CHECK(c.sources[0].name == "bay");
+  CHECK(c.sources[0].files == Lines{"/data/bay/*.nc"});
+  CHECK(c.sources[0].region.size() == 3);
+  CHECK(c.sources[0].region[2] == geo_point(30, -15));
+  CHECK(c.sources[0].to == Seconds{48 * 3600.0});
+  CHECK_FALSE(c.sources[0].from);
+  CHECK(c.sources[0].interpolation == mission::Interpolation::akima);
+  CHECK(c.sources[1].outside_time == mission::OutsideTime::cycle);
+  CHECK(c.sources[1].from == Seconds{-24 * 3600.0});
+  CHECK(c.sources[1].interpolation == mission::Interpolation::linear);
+}
+
+TEST_CASE("sources that cannot be meant are reported where they stand") {
+  const auto said = [](const std::string& currents, const std::string& words) {
+    for (const auto& error : errors(currents))
+      if (error.find(words) != std::string::npos) return true;
+    for (const auto& error : errors(currents)) UNSCOPED_INFO(error);
+    return false;
+  };
+  const std::string a = "{name: a, files: [a.nc]", b = "{name: b, files: [b.nc]}";
+  CHECK(said("currents: {sources: []}\n", "5:21 currents.sources: a list of another length"));
+  CHECK(said("currents: {sources: [{files: [a.nc]}]}\n", "currents.sources[0].name: missing"));
+  CHECK(said("currents: {sources: [{name: a}]}\n", "currents.sources[0].files: missing"));
+  CHECK(said("currents: {sources: [" + a + "}, {name: a, files: [b.nc]}]}\n", "a second source of this name"));
+  CHECK(said("currents: {sources: [" + a + "}], files: [c.nc]}\n", "both sources and files"));
+  CHECK(said("currents: {interpolation: cubic, sources: [" + a + "}]}\n",
+             "currents.interpolation: stands beside sources; allowed is interpolation in each source"));
+  CHECK(
+      said("currents: {sources: [" + a + ", from_h: 10, to_h: 10}]}\n", "currents.sources[0].to_h: not after from_h"));
+  CHECK(said("currents: {sources: [" + a + ", region: [{lat_deg: 1, lon_deg: 1}, {lat_deg: 2, lon_deg: 2}]}]}\n",
+             "currents.sources[0].region: a list of another length"));
+  CHECK(said("currents: {sources: [" + a +
+                 ", region: [{lat_deg: 1, lon_deg: 1}, {lat_deg: 2, lon_deg: 2}, {lat_deg: 1, lon_deg: 2}, "
+                 "{lat_deg: 2, lon_deg: 1}]}]}\n",
+             "cross"));
+  CHECK(said("currents: {join_h: 0.1, sources: [" + a + "}, " + b + "]}\n", "currents.join_h: "));
+  CHECK(said("currents: [{files: [c.nc]}, {sources: [" + b + "]}]\n", "a second set of files"));
+  CHECK(said("currents: {sources: [{name: a, file: [a.nc]}]}\n", "files"));  // the nearest key
 }

@@ -451,3 +451,116 @@ TEST_CASE("a watch that is gone is not called any more") {
   lookout.settle();
   CHECK(lookout.story.empty());
 }
+
+TEST_CASE("a forecast in use grows old after 36 hours and is not to be planned on after 72, until a newer one comes") {
+  Post post;
+  post.shelf.publish("a.nc", post.run(0.125, 0, 200));  // reaches 200 h: it is its age that counts
+  post.follow();
+  REQUIRE(post.watch->current());
+  CHECK_FALSE(post.watch->old());
+  post.world.pass(Seconds{36 * 3600.0 + 60});
+  CHECK(post.watch->old());
+  CHECK_FALSE(post.watch->expired());
+  post.world.pass(Seconds{36 * 3600.0});
+  REQUIRE(post.watch->expired());
+  CHECK(post.watch->expired()->find(" is 72.0 h old; planned on are at most 72 h") != std::string::npos);
+  post.shelf.publish("b.nc", post.run(0.25, 1, 200));
+  post.look();
+  CHECK_FALSE(post.watch->expired());
+  CHECK(post.east() == 0.25);
+}
+
+TEST_CASE("a tide that comes again does not age") {
+  Post post;
+  post.mission.currents.outside_time = ocean::OutsideTime::cycle;
+  post.shelf.publish("a.nc", post.run(0.125, 0));
+  post.follow();
+  post.world.pass(Seconds{30 * 86400.0});
+  CHECK_FALSE(post.watch->old());
+  CHECK_FALSE(post.watch->expired());
+}
+
+namespace {
+
+/// Two sources over one area: "bay" is trusted more than "globe".
+mission::Mission two_sources() {
+  auto m = mission_of({});
+  for (const char* name : {"bay", "globe"}) {
+    mission::CurrentSource source;
+    source.name = name;
+    source.files = {std::string{"/data/"} + name + "*.nc"};
+    m.currents.sources.push_back(source);
+  }
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE("of several sources the most trusted answers, and the request of a verifier names every grid") {
+  Post post;
+  post.mission = two_sources();
+  post.shelf.publish("bay1.nc", post.run(0.125, 1));
+  post.shelf.publish("globe1.nc", post.run(0.25, 2, 200));
+  post.follow();
+  REQUIRE(post.watch->current());
+  CHECK(post.east() == 0.125);
+  verify::VerifyRequest request;
+  put_ocean(*post.watch->current(), request);
+  CHECK_FALSE(request.grid);
+  REQUIRE(request.sources.size() == 2);
+  CHECK(request.sources[0].name == "bay");
+  CHECK(request.sources[0].grid.path != request.sources[1].grid.path);
+  CHECK(post.watch->current()->forecast.facts().sources == std::vector<std::string>{"bay", "globe"});
+  CHECK(post.watch->in_use().find("bay1.nc over globe1.nc") == 0);
+  // Beyond the end of the trusted source, 95 h after its begin, the other one goes on.
+  post.world.pass(Seconds{100 * 3600.0});
+  CHECK(post.east() == 0.25);
+}
+
+TEST_CASE("a source that cannot be read is told, the others go on, and its last good grid stays in use") {
+  Post post;
+  post.mission = two_sources();
+  post.shelf.publish_bad("bay1.nc", "nonsense");
+  post.shelf.publish("globe1.nc", post.run(0.25, 2));
+  post.follow();
+  REQUIRE(post.watch->current());
+  CHECK(post.east() == 0.25);
+  REQUIRE(post.refused.size() == 1);
+  CHECK(post.refused[0].find("source 'bay': ") == 0);
+  post.shelf.take("bay1.nc");
+  post.shelf.publish("bay2.nc", post.run(0.125, 0));
+  post.look();
+  CHECK(post.east() == 0.125);
+  CHECK(post.watch->problem().empty());
+  post.shelf.publish_bad("bay2.nc", "nonsense");  // replaced by something bad
+  post.look();
+  CHECK(post.east() == 0.125);
+  CHECK(post.watch->problem().find("source 'bay': ") == 0);
+  post.start();  // a daemon that starts anew
+  post.follow();
+  REQUIRE(post.watch->current());
+  CHECK(post.east() == 0.125);
+}
+
+TEST_CASE("a source that has expired is left out while another one remains, and not before") {
+  Post post;
+  post.mission = two_sources();
+  post.shelf.publish("bay1.nc", post.run(0.125, 0, 300));
+  post.shelf.publish("globe1.nc", post.run(0.25, 0, 300));
+  post.follow();
+  CHECK(post.east() == 0.125);
+  post.world.pass(Seconds{48 * 3600.0});
+  post.shelf.publish("globe2.nc", post.run(0.375, 0, 300));
+  post.look();
+  CHECK(post.east() == 0.125);
+  post.world.pass(Seconds{24.1 * 3600.0});
+  REQUIRE(post.watch->expired());
+  post.look();
+  CHECK_FALSE(post.watch->expired());
+  CHECK(post.east() == 0.375);
+  REQUIRE_FALSE(post.noted.empty());
+  CHECK(post.noted.back().find("source 'bay' is left out: it is 72.1 h old, allowed are 72 h") == 0);
+  post.world.pass(Seconds{60 * 3600.0});  // now the other one, too: both are kept, and nothing is planned
+  post.look();
+  CHECK(post.watch->expired());
+}

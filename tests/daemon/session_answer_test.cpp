@@ -2,6 +2,7 @@
 
 #include "core/base/utc.hpp"
 #include "protocol/goto_list.hpp"
+#include "tests/support/forecast_shelf.hpp"
 #include "tests/support/pilot_desk.hpp"
 #include "tests/support/session_desk.hpp"
 
@@ -220,4 +221,32 @@ TEST_CASE("a verifier that gives no verdict refuses the file, with what became o
   CHECK(desk.said(row.said) >= 1);
   CHECK_FALSE(desk.world.files.get(kFile));
   CHECK(desk.session->pilot().stage() == mission::Stage::kept);
+}
+
+TEST_CASE("a forecast in use is said to be old after 36 hours, and after 72 no plan is made on it") {
+  SessionDesk desk;
+  test::ForecastShelf shelf{desk.world};
+  const double now = epoch_seconds(desk.world.clock.utc());
+  shelf.publish("a.nc", {0.0, now, now, 200});
+  std::string yaml = SessionDesk::kMission;
+  const auto begin = yaml.find("currents:"), end = yaml.find('\n', begin);
+  yaml.replace(begin, end - begin, "currents: {files: [/data/*.nc]}");
+  desk.session->fly({SessionDesk::mission(yaml)}, "start");
+  REQUIRE(desk.session->start());
+  desk.settle();
+  const auto surface = [&](int segment) {
+    desk.dial();
+    desk.say(desk.connection_block(0) + desk.at_surface_block(0, segment));
+    desk.pass(Seconds{1200});
+    desk.hang_up();
+  };
+  surface(0);
+  CHECK(desk.said("the forecast is old") == 0);
+  desk.pass(Seconds{40 * 3600.0});
+  surface(1);
+  CHECK(desk.said("the forecast is old: a.nc ") > 0);
+  CHECK(desk.said("planned on are at most 72 h") == 0);
+  desk.pass(Seconds{32 * 3600.0});
+  surface(2);
+  CHECK(desk.said("h old; planned on are at most 72 h") > 0);
 }

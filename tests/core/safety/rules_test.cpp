@@ -398,6 +398,21 @@ TEST_CASE("rule forecast cover: the forecast reaches the second next surfacing a
   CHECK(c.failing() == "forecast cover");
 }
 
+TEST_CASE("rule forecast age: 72 hours are allowed and not more, currents of no one time do not age") {
+  auto c = good_case();
+  const auto aged = [&](double hours) {
+    return margin(judge(c.dossier, c.field, chart::Chart{c.sources}, c.dossier.judged_s - 3600 * hours),
+                  "forecast age");
+  };
+  CHECK(aged(71.99).holds);
+  CHECK(aged(71.99).found == Approx(71.99));
+  CHECK_FALSE(aged(72.01).holds);
+  CHECK(aged(72.01).message == "the forecast is 72.0 h old, allowed are 72 h");
+  CHECK(aged(-5).holds);  // issued after this instant: a rehearsal in the past
+  CHECK_FALSE(judge(c.dossier, c.field, chart::Chart{c.sources}, c.dossier.judged_s - 3600 * 73.0).accepted);
+  CHECK(margin(c.judged(), "forecast age").holds);
+}
+
 TEST_CASE("rule forecast speed: no current met is faster than refused") {
   auto c = good_case();
   const double late = *c.dossier.promise.list_arrival_s + 3600;

@@ -86,6 +86,9 @@ VerifyRequest awkward_request() {
   r.analytic_box.west = 2.9;
   r.analytic_box.east = 3.3;
   r.analytic_box.holds_outside = false;
+  r.sources.push_back(
+      {"bay", InputFile{"a.grid", Sha256::of("a")}, r.grid_options, {geo_point(1, 2), geo_point(3, 4)}, -1e18, 1.5e9});
+  r.seams = {Metres{12'345.6}, Seconds{7200.5}};
   r.coast = InputFile{"x.coast", Sha256::of("coast")};
   r.keep_in = {{"box", {geo_point(1, 1), geo_point(1, 2), geo_point(2, 2)}}};
   r.keep_out = {{"", {geo_point(-1, 179.5), geo_point(-1, -179.5), geo_point(-2, 180)}}, {"second", {}}};

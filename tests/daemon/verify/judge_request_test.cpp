@@ -99,6 +99,20 @@ TEST_CASE("a request with a grid is judged in that grid") {
   CHECK(desk.failing() == "promise surfacing, promise arrival");
 }
 
+TEST_CASE("the verifier reads the forecast's age from the grid itself: older than 72 h is refused, a tide is not") {
+  Desk desk;
+  const double judged = desk.request.dossier.judged_s;
+  auto grid = uniform_grid(desk.request.dossier);
+  grid.facts.reference_s = judged - 71.9 * 3600;
+  desk.put_grid(grid);
+  CHECK(desk.failing() == "");
+  grid.facts.reference_s = judged - 72.1 * 3600;
+  desk.put_grid(grid);
+  CHECK(desk.failing() == "forecast age");
+  desk.request.grid_options.outside_time = ocean::OutsideTime::cycle;
+  CHECK(desk.failing() == "");
+}
+
 TEST_CASE("another grid than the one planned on, a damaged or a missing one give no verdict") {
   Desk desk;
   const std::string good = desk.files.content["now.grid"];
@@ -198,4 +212,49 @@ TEST_CASE("an explanation names broken rules first and leaves absent numbers out
                    0) == 0);
   CHECK(text.find("nan") == std::string::npos);
   CHECK(explain(test::verdict_on("goto_l10.ma", "bytes")).rfind("accepted: ", 0) == 0);
+}
+
+namespace {
+
+/// The grid of the dossier's ocean as the most trusted of two sources; the other one runs three times as fast.
+void put_sources(Desk& desk) {
+  const auto good = uniform_grid(desk.request.dossier);
+  auto other = good;
+  for (auto& value : other.values) value *= 3;
+  desk.files.content["first.grid"] = ocean::write_grid(good);
+  desk.files.content["second.grid"] = ocean::write_grid(other);
+  desk.request.grid.reset();
+  for (const char* name : {"first", "second"}) {
+    const auto path = std::string{name} + ".grid";
+    desk.request.sources.push_back(
+        {name, InputFile{path, *grid_identity(desk.files.content[path])}, {}, {}, -1e18, 1e18});
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a request with sources is judged in their composite, the most trusted first") {
+  Desk desk;
+  put_sources(desk);
+  desk.request.seams.blend = Metres{1000};
+  CHECK(desk.failing() == "");
+  std::swap(desk.request.sources[0], desk.request.sources[1]);
+  CHECK(desk.failing().find("promise surfacing") != std::string::npos);
+}
+
+TEST_CASE("sources that are not those planned on, or make no sense, give no verdict") {
+  Desk desk;
+  put_sources(desk);
+  const auto good = desk.request;
+  desk.request.sources[1].grid.hash = Sha256::of("another");
+  CHECK(desk.failing() == "second.grid: is not the grid that was planned on");
+  desk.request = good;
+  desk.request.seams.join = Seconds{0};
+  CHECK(desk.failing() == "request: the seams between its sources have no width");
+  desk.request = good;
+  desk.request.sources[0].region = {geo_point(1, 1), geo_point(2, 2)};
+  CHECK(desk.failing() == "source 'first': has a region of fewer than three corners");
+  desk.request = good;
+  desk.request.sources[0].to_s = -2e18;
+  CHECK(desk.failing() == "source 'first': ends before it begins");
 }

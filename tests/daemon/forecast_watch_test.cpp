@@ -499,8 +499,9 @@ mission::Mission two_sources() {
 TEST_CASE("of several sources the most trusted answers, and the request of a verifier names every grid") {
   Post post;
   post.mission = two_sources();
-  post.shelf.publish("bay1.nc", post.run(0.125, 1));
-  post.shelf.publish("globe1.nc", post.run(0.25, 2, 200));
+  // Begun long enough ago that the join at the begin of the newer one, 6 h, is over.
+  post.shelf.publish("bay1.nc", post.run(0.125, 12));
+  post.shelf.publish("globe1.nc", post.run(0.25, 13, 200));
   post.follow();
   REQUIRE(post.watch->current());
   CHECK(post.east() == 0.125);
@@ -512,7 +513,7 @@ TEST_CASE("of several sources the most trusted answers, and the request of a ver
   CHECK(request.sources[0].grid.path != request.sources[1].grid.path);
   CHECK(post.watch->current()->forecast.facts().sources == std::vector<std::string>{"bay", "globe"});
   CHECK(post.watch->in_use().find("bay1.nc over globe1.nc") == 0);
-  // Beyond the end of the trusted source, 95 h after its begin, the other one goes on.
+  // Beyond the end of the trusted source, 83 h from now, the other one goes on.
   post.world.pass(Seconds{100 * 3600.0});
   CHECK(post.east() == 0.25);
 }
@@ -521,14 +522,14 @@ TEST_CASE("a source that cannot be read is told, the others go on, and its last 
   Post post;
   post.mission = two_sources();
   post.shelf.publish_bad("bay1.nc", "nonsense");
-  post.shelf.publish("globe1.nc", post.run(0.25, 2));
+  post.shelf.publish("globe1.nc", post.run(0.25, 20));
   post.follow();
   REQUIRE(post.watch->current());
   CHECK(post.east() == 0.25);
   REQUIRE(post.refused.size() == 1);
   CHECK(post.refused[0].find("source 'bay': ") == 0);
   post.shelf.take("bay1.nc");
-  post.shelf.publish("bay2.nc", post.run(0.125, 0));
+  post.shelf.publish("bay2.nc", post.run(0.125, 12));
   post.look();
   CHECK(post.east() == 0.125);
   CHECK(post.watch->problem().empty());

@@ -10,7 +10,7 @@ namespace glidehelm::simulator {
 namespace {
 
 constexpr std::uint32_t kDimension = 10, kVariable = 11, kAttribute = 12;
-constexpr std::uint32_t kChar = 2, kFloat = 5, kDouble = 6;
+constexpr std::uint32_t kChar = 2;
 constexpr float kFill = -32768.0F;
 
 void put32(std::string& out, std::uint32_t v) {
@@ -20,8 +20,6 @@ void put64(std::string& out, std::uint64_t v) {
   put32(out, static_cast<std::uint32_t>(v >> 32U));
   put32(out, static_cast<std::uint32_t>(v));
 }
-void put_float(std::string& out, float v) { put32(out, std::bit_cast<std::uint32_t>(v)); }
-void put_double(std::string& out, double v) { put64(out, std::bit_cast<std::uint64_t>(v)); }
 void pad(std::string& out) {
   while (out.size() % 4 != 0) out += '\0';
 }
@@ -31,37 +29,42 @@ void put_text(std::string& out, const std::string& text) {
   pad(out);
 }
 
-struct Attribute {
-  std::string name, text;
-  bool fill{};  ///< a float instead of a text
-};
-
-struct Variable {
-  std::string name;
-  std::vector<std::uint32_t> dimensions;
-  std::vector<Attribute> attributes;
-  std::uint32_t type{kDouble};
-  std::string data;
-};
-
-void put_attributes(std::string& out, const std::vector<Attribute>& attributes) {
+void put_attributes(std::string& out, const std::vector<ClassicAttribute>& attributes) {
   put32(out, attributes.empty() ? 0 : kAttribute);
   put32(out, static_cast<std::uint32_t>(attributes.size()));
   for (const auto& a : attributes) {
     put_text(out, a.name);
-    put32(out, a.fill ? kFloat : kChar);
-    if (a.fill) {
+    put32(out, a.number ? static_cast<std::uint32_t>(ClassicVariable::Type::float32) : kChar);
+    if (a.number) {
       put32(out, 1);
-      put_float(out, kFill);
+      put_float(out, *a.number);
     } else {
       put_text(out, a.text);
     }
   }
 }
 
-/// Header and data. Where the data begin depends on the header's length, which does not depend on where they begin.
-std::string file_of(const std::vector<std::pair<std::string, std::size_t>>& dimensions,
-                    const std::vector<Attribute>& global, const std::vector<Variable>& variables) {
+std::vector<double> axis(double low, double high, double step) {
+  std::vector<double> nodes;
+  const int last = static_cast<int>(std::floor((high - low) / step + 1e-9));
+  for (int i = 0; i <= last; ++i) nodes.push_back(low + i * step);
+  return nodes;
+}
+
+std::string doubles(const std::vector<double>& values, double less = 0, double by = 1) {
+  std::string out;
+  for (const double v : values) put_double(out, (v - less) / by);
+  return out;
+}
+
+}  // namespace
+
+void put_float(std::string& out, float value) { put32(out, std::bit_cast<std::uint32_t>(value)); }
+void put_double(std::string& out, double value) { put64(out, std::bit_cast<std::uint64_t>(value)); }
+
+std::string classic_file(const std::vector<std::pair<std::string, std::size_t>>& dimensions,
+                         const std::vector<ClassicAttribute>& global, const std::vector<ClassicVariable>& variables) {
+  // Where the data begin depends on the header's length, which does not depend on where they begin.
   const auto header = [&](std::uint64_t begin) {
     std::string out{"CDF\x02"};
     put32(out, 0);
@@ -79,7 +82,7 @@ std::string file_of(const std::vector<std::pair<std::string, std::size_t>>& dime
       put32(out, static_cast<std::uint32_t>(v.dimensions.size()));
       for (const auto d : v.dimensions) put32(out, d);
       put_attributes(out, v.attributes);
-      put32(out, v.type);
+      put32(out, static_cast<std::uint32_t>(v.type));
       put32(out, static_cast<std::uint32_t>(v.data.size()));
       put64(out, begin);
       begin += v.data.size();
@@ -87,24 +90,12 @@ std::string file_of(const std::vector<std::pair<std::string, std::size_t>>& dime
     return out;
   };
   std::string out = header(header(0).size());
+  std::size_t size = out.size();
+  for (const auto& v : variables) size += v.data.size();
+  out.reserve(size);
   for (const auto& v : variables) out += v.data;
   return out;
 }
-
-std::vector<double> axis(double low, double high, double step) {
-  std::vector<double> nodes;
-  const int last = static_cast<int>(std::floor((high - low) / step + 1e-9));
-  for (int i = 0; i <= last; ++i) nodes.push_back(low + i * step);
-  return nodes;
-}
-
-std::string doubles(const std::vector<double>& values, double less = 0, double by = 1) {
-  std::string out;
-  for (const double v : values) put_double(out, (v - less) / by);
-  return out;
-}
-
-}  // namespace
 
 std::string forecast_file(const ocean::FieldRef& field, const ForecastGrid& grid, double reference_s) {
   const auto lats = axis(grid.south_deg, grid.north_deg, grid.step_deg);
@@ -134,16 +125,17 @@ std::string forecast_file(const ocean::FieldRef& field, const ForecastGrid& grid
   all.push_back(lat_d);
   all.push_back(lat_d + 1);
   const std::string since = "hours since " + utc_text(instant_at(reference_s));
-  std::vector<Variable> variables{{"time",
-                                   {0},
-                                   {{"standard_name", "time"}, {"units", since}, {"calendar", "standard"}},
-                                   kDouble,
-                                   doubles(grid.times_s, reference_s, 3600)},
-                                  {"forecast_reference_time",
-                                   {},
-                                   {{"standard_name", "forecast_reference_time"}, {"units", since}},
-                                   kDouble,
-                                   doubles({0.0})}};
+  constexpr auto kFloat = ClassicVariable::Type::float32, kDouble = ClassicVariable::Type::float64;
+  std::vector<ClassicVariable> variables{{"time",
+                                          {0},
+                                          {{"standard_name", "time"}, {"units", since}, {"calendar", "standard"}},
+                                          kDouble,
+                                          doubles(grid.times_s, reference_s, 3600)},
+                                         {"forecast_reference_time",
+                                          {},
+                                          {{"standard_name", "forecast_reference_time"}, {"units", since}},
+                                          kDouble,
+                                          doubles({0.0})}};
   if (deep)
     variables.push_back(
         {"depth", {1}, {{"standard_name", "depth"}, {"units", "m"}, {"positive", "down"}}, kDouble, doubles(depths)});
@@ -151,18 +143,19 @@ std::string forecast_file(const ocean::FieldRef& field, const ForecastGrid& grid
       {"lat", {lat_d}, {{"standard_name", "latitude"}, {"units", "degrees_north"}}, kDouble, doubles(lats)});
   variables.push_back(
       {"lon", {lat_d + 1}, {{"standard_name", "longitude"}, {"units", "degrees_east"}}, kDouble, doubles(lons)});
-  variables.push_back({"water_u",
-                       all,
-                       {{"standard_name", "eastward_sea_water_velocity"}, {"units", "m s-1"}, {"_FillValue", "", true}},
-                       kFloat,
-                       std::move(u)});
+  variables.push_back(
+      {"water_u",
+       all,
+       {{"standard_name", "eastward_sea_water_velocity"}, {"units", "m s-1"}, {"_FillValue", "", kFill}},
+       kFloat,
+       std::move(u)});
   variables.push_back(
       {"water_v",
        all,
-       {{"standard_name", "northward_sea_water_velocity"}, {"units", "m s-1"}, {"_FillValue", "", true}},
+       {{"standard_name", "northward_sea_water_velocity"}, {"units", "m s-1"}, {"_FillValue", "", kFill}},
        kFloat,
        std::move(v)});
-  return file_of(dimensions, {{"Conventions", "CF-1.8"}, {"title", "made-up currents"}}, variables);
+  return classic_file(dimensions, {{"Conventions", "CF-1.8"}, {"title", "made-up currents"}}, variables);
 }
 
 }  // namespace glidehelm::simulator

@@ -1,14 +1,11 @@
 #include <CLI/CLI.hpp>
-#include <charconv>
-#include <functional>
 #include <iostream>
 
-#include "core/base/text.hpp"
-#include "core/base/utc.hpp"
+#include "daemon/cli/arguments.hpp"
 #include "daemon/cli/check.hpp"
 #include "daemon/cli/coast.hpp"
 #include "daemon/cli/compare.hpp"
-#include "daemon/cli/field.hpp"
+#include "daemon/cli/field_verbs.hpp"
 #include "daemon/cli/mafile.hpp"
 #include "daemon/cli/plan.hpp"
 #include "daemon/cli/rehearse.hpp"
@@ -20,30 +17,13 @@
 namespace {
 
 using namespace glidehelm;
+using cli::Action;
+using cli::pair_from;
+using cli::time_from;
 
 constexpr const char* kHelp =
     "Planning and looking for pilots of underwater gliders. Every verb that reads takes --json.\n"
     "Exit codes: 0 done, 1 a finding or a negative answer, 2 usage, 4 refused by safety, 5 deadline missed.";
-
-/// A verb's run, chosen by the parser.
-using Action = std::function<int(world::World&)>;
-
-/// "28.2,-15.2": CLI11 would take "-15.2" of two words for an option, so pairs are one word.
-std::pair<double, double> pair_from(const std::string& text, const char* what) {
-  const auto comma = text.find(',');
-  const auto first = number_from(trimmed(std::string_view{text}.substr(0, comma)));
-  const auto second =
-      comma == std::string::npos ? std::nullopt : number_from(trimmed(std::string_view{text}.substr(comma + 1)));
-  if (!first || !second)
-    throw CLI::ValidationError{what, "'" + text + "' is not two numbers with a comma between, as 28.2,-15.2"};
-  return {*first, *second};
-}
-
-Instant time_from(const std::string& text, const char* what) {
-  const auto t = utc_from_text(text);
-  if (!t) throw CLI::ValidationError{what, "'" + text + "' is not a UTC time, as 2026-11-25T10:20:30Z"};
-  return *t;
-}
 
 void add_check(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::CheckOptions>();
@@ -221,77 +201,6 @@ void add_mafile(CLI::App& app, Action& action) {
   });
 }
 
-/// How files are read, where they do not say it themselves or are to be read in another way.
-void add_reading(CLI::App* verb, daemon::IngestOptions& ingest) {
-  verb->add_option_function<std::string>(
-      "--variables",
-      [&ingest](const std::string& text) {
-        const auto comma = text.find(',');
-        if (comma == std::string::npos || comma == 0 || comma + 1 == text.size())
-          throw CLI::ValidationError{"--variables", "allowed is EAST,NORTH"};
-        ingest.east = text.substr(0, comma);
-        ingest.north = text.substr(comma + 1);
-      },
-      "EAST,NORTH: names of the velocity variables");
-  verb->add_option_function<std::string>(
-      "--time-epoch", [&ingest](const std::string& text) { ingest.time_epoch = time_from(text, "--time-epoch"); },
-      "Time 0 of a time axis that does not say it, UTC");
-  verb->add_option("--heights", ingest.heights, "Currents from the slope of the sea surface")
-      ->check(CLI::IsMember({"auto", "always", "never"}));
-  verb->add_option_function<double>(
-          "--equator-band", [&ingest](double value) { ingest.equator_band_deg = value; },
-          "Degrees of latitude within which that slope says nothing (default 5)")
-      ->check(CLI::Range(0.0, 90.0));
-  verb->add_option_function<double>(
-          "--fill-gaps", [&ingest](double value) { ingest.fill_gaps_km = value; },
-          "Km up to which gaps of surface currents are filled (default: two cells of HF radar)")
-      ->check(CLI::Range(0.0, 500.0));
-  verb->add_option("--grid-file", ingest.grid_file, "A model's grid that lies apart from its forecasts");
-  verb->add_option("--rotation", ingest.rotation,
-                   "Velocities on a turned grid: along its axes, turned by its angle or by the grid; or none of both")
-      ->check(CLI::IsMember({"angle", "grid", "none"}));
-  verb->add_option("--s-levels", ingest.s_levels,
-                   "ROMS levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
-}
-
-void add_field(CLI::App& app, Action& action) {
-  auto* field = app.add_subcommand("field", "What a forecast is, and what it says at a place");
-  field->require_subcommand(1);
-  auto info = std::make_shared<cli::FieldInfoOptions>();
-  auto* verb = field->add_subcommand("info", "Variables recognised and why, grid, times, depths, speeds, warnings");
-  verb->add_option("FILE", info->files, "NetCDF files or shell patterns; several join into one field")->required();
-  add_reading(verb, info->ingest);
-  verb->add_flag("--json", info->json, "One JSON document on standard output");
-  verb->callback([info, &action] {
-    action = [info](world::World& w) { return cli::run_field_info(*info, w, std::cout, std::cerr); };
-  });
-
-  struct Words {
-    cli::FieldSampleOptions options;
-    double lat{}, lon{}, depth{};
-    std::string time, mean;
-  };
-  auto o = std::make_shared<Words>();
-  auto* sample = field->add_subcommand("sample", "The current at a place, or at every place of a CSV");
-  sample->add_option("FILE", o->options.files, "NetCDF files or shell patterns")->required();
-  auto* lat = sample->add_option("--lat", o->lat, "Latitude, degrees");
-  auto* lon = sample->add_option("--lon", o->lon, "Longitude, degrees");
-  auto* time = sample->add_option("--time", o->time, "UTC");
-  auto* depth = sample->add_option("--depth", o->depth, "Metres below the surface (default: the shallowest level)");
-  auto* mean = sample->add_option("--depth-mean", o->mean, "MIN,MAX: mean between two depths, metres");
-  add_reading(sample, o->options.ingest);
-  sample->add_option("--points", o->options.points, "CSV of lat,lon,time[,depth]");
-  sample->add_flag("--json", o->options.json, "One JSON document on standard output");
-  sample->callback([=, &action] {
-    if (*lat) o->options.lat_deg = o->lat;
-    if (*lon) o->options.lon_deg = o->lon;
-    if (*time) o->options.time = time_from(o->time, "--time");
-    if (*depth) o->options.depth_m = o->depth;
-    if (*mean) o->options.depth_mean = pair_from(o->mean, "--depth-mean");
-    action = [o](world::World& w) { return cli::run_field_sample(o->options, w, std::cout, std::cerr); };
-  });
-}
-
 void add_coast(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::CoastOptions>();
   auto* verb = app.add_subcommand("coast", "Cut a coastline from GSHHG full resolution (Debian: gmt, gmt-gshhg-full)");
@@ -314,7 +223,7 @@ int main(int argc, char** argv) {
   add_rehearse(app, action);
   add_replay(app, action);
   add_mafile(app, action);
-  add_field(app, action);
+  cli::add_field(app, action);
   add_coast(app, action);
   try {
     app.parse(argc, argv);

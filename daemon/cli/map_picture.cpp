@@ -16,23 +16,6 @@ std::string degrees_text(double degrees, const char* positive, const char* negat
 
 }  // namespace
 
-std::string escaped(std::string_view text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '"')
-      safe += "&quot;";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 MapPicture::MapPicture(std::span<const GeoPoint> points) {
   middle_ = points.front().lon.degrees();
   double west = 0, east = 0, south = 90, north = -90;

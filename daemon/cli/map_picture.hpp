@@ -7,12 +7,10 @@
 
 #include "core/base/geo.hpp"
 #include "core/chart/chart.hpp"
+#include "daemon/cli/markup.hpp"
 
 /// What pages of the command line draw with: a map and tables in plain HTML, nothing from outside.
 namespace glidehelm::cli {
-
-/// Text that may stand in HTML.
-std::string escaped(std::string_view text);
 
 /// Longitude and latitude to the plane of a picture: equirectangular about the middle, north up, wide enough for all points and
 /// a tenth on every side; across the antimeridian too.

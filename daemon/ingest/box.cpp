@@ -87,6 +87,7 @@ Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& unit
 Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& in,
                                 const Component& component, float* values, std::size_t step_of_values) {
   std::size_t outside = 0;
+  const bool ranged = component.has_valid_range();
   const std::size_t rank = variable.dimensions.size();
   const auto [low_lat, high_lat] = std::minmax_element(in.lats.source.begin(), in.lats.source.end());
   const std::size_t depths = in.depths.values.size(), rows = in.lats.values.size(), columns = in.lons.values.size();
@@ -103,16 +104,19 @@ Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable
       if (!stored) return unexpected(stored.error());
       for (std::size_t d = rank, step = 1; d-- > 0; step *= count[d]) stride[d] = step;
       const std::size_t depth_stride = in.has_depth && axes.depth->position ? stride[*axes.depth->position] : 0;
+      const std::size_t lat_stride = stride[*axes.latitude.position], lon_stride = stride[*axes.longitude.position];
       for (std::size_t z = 0; z < depths; ++z)
-        for (std::size_t j = 0; j < rows; ++j)
+        for (std::size_t j = 0; j < rows; ++j) {
+          const double* row =
+              stored->data() + in.depths.source[z] * depth_stride + (in.lats.source[j] - *low_lat) * lat_stride;
+          float* to = values + step_of_values * (((t * depths + z) * rows + j) * columns);
           for (std::size_t i = run.first; i <= run.last; ++i) {
-            const std::size_t at = in.depths.source[z] * depth_stride +
-                                   (in.lats.source[j] - *low_lat) * stride[*axes.latitude.position] +
-                                   (in.lons.source[i] - run.source) * stride[*axes.longitude.position];
-            const double value = component((*stored)[at]);
-            if (value == value && component.outside_valid((*stored)[at])) ++outside;
-            values[step_of_values * (((t * depths + z) * rows + j) * columns + i)] = static_cast<float>(value);
+            const double number = row[(in.lons.source[i] - run.source) * lon_stride];
+            const double value = component(number);
+            if (ranged && value == value && component.outside_valid(number)) ++outside;
+            to[step_of_values * i] = static_cast<float>(value);
           }
+        }
     }
   }
   return outside;

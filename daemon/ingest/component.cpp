@@ -37,8 +37,6 @@ double default_fill(Type type) {
 
 constexpr const char* kFillNames[] = {"_FillValue", "FillValue", "FillValue_", "_fillvalue", "fill_value"};
 
-bool same(double value, double mark) { return value == mark || std::abs(value - mark) <= 1e-6 * std::abs(mark); }
-
 /// A number of an attribute as the variable itself would hold it: a double 1.26765e+30 meant for a float is that float.
 double in_type(double value, Type type) {
   return type == Type::float32 ? static_cast<double>(static_cast<float>(value)) : value;
@@ -59,12 +57,6 @@ Missing::Missing(const Variable& variable) : floating_{is_floating(variable.type
     for (const double value : numbers_of(variable, name)) marks_.push_back(variable.as_meant(value));
   if (marks_.empty()) marks_.push_back(default_fill(variable.type));
   for (const double value : numbers_of(variable, "missing_value")) marks_.push_back(variable.as_meant(value));
-}
-
-bool Missing::operator()(double stored) const {
-  if (!std::isfinite(stored)) return true;
-  return std::any_of(marks_.begin(), marks_.end(),
-                     [&](double mark) { return floating_ ? same(stored, mark) : stored == mark; });
 }
 
 Result<Component> Component::of(const Variable& variable, const Units& units, const std::string& target,
@@ -108,16 +100,6 @@ void Component::read_valid_range(const Variable& variable, bool packed) {
   limit("valid_range", 1, false);
   limit("valid_min", 0, true);
   limit("valid_max", 0, false);
-}
-
-double Component::operator()(double stored) const {
-  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-  if (missing_(stored)) return kMissing;
-  const double value = stored * scale_ + offset_;
-  if (!std::isfinite(value)) return kMissing;
-  for (const double mark : missing_values_)
-    if (same(value, mark)) return kMissing;
-  return to_si_.slope == 1 && to_si_.intercept == 0 ? value : to_si_(value);
 }
 
 bool Component::outside_valid(double stored) const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,7 +22,15 @@ class Missing {
   /// type's default fill value where no fill value is named (not for bytes, as the NetCDF Users' Guide says). Floating
   /// marks count to 1e-6: a mark may be kept in another precision than the values.
   explicit Missing(const Variable& variable);
-  [[nodiscard]] bool operator()(double stored) const;
+  [[nodiscard]] bool operator()(double stored) const {
+    if (!std::isfinite(stored)) return true;
+    return std::any_of(marks_.begin(), marks_.end(),
+                       [&](double mark) { return floating_ ? same(stored, mark) : stored == mark; });
+  }
+  /// True when a number is a floating mark, to its precision.
+  static bool same(double value, double mark) {
+    return value == mark || std::abs(value - mark) <= 1e-6 * std::abs(mark);
+  }
 
  private:
   std::vector<double> marks_;
@@ -41,8 +52,18 @@ class Component {
   /// A variable of plain numbers, such as a flag: neither packing nor unit counts.
   static Component plain(const Variable& variable) { return Component{variable}; }
 
-  /// In the target unit, or NaN.
-  [[nodiscard]] double operator()(double stored) const;
+  /// In the target unit, or NaN. In the header because it runs once per number of a file.
+  [[nodiscard]] double operator()(double stored) const {
+    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    if (missing_(stored)) return kMissing;
+    const double value = stored * scale_ + offset_;
+    if (!std::isfinite(value)) return kMissing;
+    for (const double mark : missing_values_)
+      if (Missing::same(value, mark)) return kMissing;
+    return to_si_.slope == 1 && to_si_.intercept == 0 ? value : to_si_(value);
+  }
+  /// True when the variable names a valid range.
+  [[nodiscard]] bool has_valid_range() const { return stored_low_ || stored_high_ || value_low_ || value_high_; }
   /// True when a number that is not missing lies outside the valid range (of packed variables: in the type of the
   /// attribute, as the NetCDF Users' Guide says).
   [[nodiscard]] bool outside_valid(double stored) const;

@@ -93,13 +93,14 @@ std::vector<std::uint32_t> blocks_of(std::vector<bool> still, std::size_t column
 /// Refuses what is too fast for a sea, and warns of what nearly is.
 Result<Done> check_speeds(const ocean::Grid& grid, std::vector<std::string>& warnings) {
   const auto& axes = grid.axes;
-  double fastest = 0;
+  double squared = 0;  // of doubles made of floats: no overflow
   std::size_t fastest_node = 0;
   for (std::size_t n = 0; n < axes.nodes(); ++n) {
-    const double speed =
-        std::hypot(static_cast<double>(grid.values[2 * n]), static_cast<double>(grid.values[2 * n + 1]));
-    if (speed > fastest) fastest = speed, fastest_node = n;  // false for NaN
+    const double east = grid.values[2 * n], north = grid.values[2 * n + 1];
+    const double of_node = east * east + north * north;
+    if (of_node > squared) squared = of_node, fastest_node = n;  // false for NaN
   }
+  const double fastest = std::sqrt(squared);
   if (fastest > kRefusedSpeed)
     return fault("a current of " + text_of("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node) +
                  ", allowed is at most 5 m/s (is the unit right?)");

@@ -47,6 +47,7 @@ Result<Done> drop_failed(const NetcdfFile& file, const Variable& velocity, const
   if (std::any_of(flags.begin(), flags.end(), is_summary))
     flags.erase(std::remove_if(flags.begin(), flags.end(), [](const Variable* flag) { return !is_summary(flag); }),
                 flags.end());
+  if (flags.empty()) return Done{};
   std::size_t dropped = 0, before = 0;
   std::string names;
   std::vector<float> values(grid.axes.nodes());

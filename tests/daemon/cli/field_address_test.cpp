@@ -4,7 +4,8 @@
 #include <sstream>
 
 #include "core/base/utc.hpp"
-#include "daemon/cli/field.hpp"
+#include "daemon/cli/field_info.hpp"
+#include "daemon/cli/field_sample.hpp"
 #include "daemon/world/real.hpp"
 #include "tests/support/dap_server.hpp"
 

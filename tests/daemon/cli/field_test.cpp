@@ -1,4 +1,5 @@
-#include "daemon/cli/field.hpp"
+#include "daemon/cli/field_info.hpp"
+#include "daemon/cli/field_sample.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>

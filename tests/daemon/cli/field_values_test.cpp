@@ -3,7 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "daemon/cli/field.hpp"
+#include "daemon/cli/field_info.hpp"
+#include "daemon/cli/field_sample.hpp"
 #include "daemon/world/real.hpp"
 #include "tests/support/data.hpp"
 #include "tests/support/netcdf.hpp"

@@ -23,7 +23,6 @@ constexpr double kShortestStint_h = 0.1, kLongestStint_h = 72.0;
 struct Draft : Mission {
   std::optional<double> goal_lat, goal_lon, start_lat, start_lon;  ///< degrees
   std::optional<Seconds> stint_given, first_stint_given;
-  std::optional<Metres> min_water_depth;
   std::vector<CurrentsItem> fields;
   AreasDraft inside, outside;
 };
@@ -149,11 +148,14 @@ Fields<Draft> safety_fields() {
   f.number(
       {"min_distance_to_coast_m", "distance that the track keeps from the coast and from the border of every area"},
       &Draft::min_distance_to_coast, 1, from_to(0, 50'000));
-  f.maybe_number(
-      {"min_water_depth_m", "least depth of water; needs bathymetry, which this version does not read", false, "none"},
-      &Draft::min_water_depth, 1, from_to(0, 11'000));
-  f.number({"depth_margin_m", "water under the yo; judged once bathymetry is read, not in this version"},
-           &Draft::depth_margin, 1, from_to(0, 1000));
+  f.text({"bathymetry", "depth file, made with `glidehelm-ingest --bathymetry`", false,
+          "none: the depth of the water is not judged"},
+         &Draft::bathymetry_file);
+  f.maybe_number({"min_water_depth_m", "least depth of the water under the track; needs `bathymetry`", false,
+                  "with `bathymetry`: climb_to_m + depth_margin_m"},
+                 &Draft::min_water_depth, 1, from_to(0, 11'000));
+  f.number({"depth_margin_m", "the glider turns this far above the bottom; needs `bathymetry`"}, &Draft::depth_margin,
+           1, from_to(0, 1000));
   add_areas(f, "keep_in", "the glider stays inside one of these polygons; none: everywhere", &Draft::inside);
   add_areas(f, "keep_out", "the glider stays outside all of these polygons", &Draft::outside);
   f.maybe_number({"max_wpt_distance_m",
@@ -258,9 +260,14 @@ void check_planning(const Draft& d, Reading& reading) {
 }
 
 void check_safety(const Draft& d, Reading& reading) {
-  if (d.min_water_depth)
+  if (!d.min_water_depth) return;
+  if (d.bathymetry_file.empty())
     reading.complain("safety.min_water_depth_m",
-                     "depth limits need bathymetry, which this version does not read; leave the key out");
+                     "a least depth needs safety.bathymetry, the depth file to judge it on");
+  else if (*d.min_water_depth < d.climb_to + d.depth_margin)
+    reading.complain("safety.min_water_depth_m",
+                     yaml_number(d.min_water_depth->si()) + " m of water leave no room to dive", {},
+                     "at least climb_to_m + depth_margin_m = " + yaml_number((d.climb_to + d.depth_margin).si()));
 }
 
 /// Works out what depends on several keys. Only for a draft without error.
@@ -274,6 +281,7 @@ void resolve(Draft& d, const std::string& file) {
   d.first_stint = d.first_stint_given.value_or(d.stint);
   d.currents = resolve_currents(d.fields);
   d.coast_file = path_beside(file, d.coast_file);
+  d.bathymetry_file = path_beside(file, d.bathymetry_file);
   d.keep_in = d.inside.areas;
   d.keep_out = d.outside.areas;
 }

@@ -41,6 +41,7 @@ ForecastWatch::~ForecastWatch() { *alive_ = false; }
 void ForecastWatch::follow(const mission::Mission& mission) {
   const bool same =
       mission_ && mission_->currents == mission.currents && mission_->coast_file == mission.coast_file &&
+      mission_->bathymetry_file == mission.bathymetry_file && mission_->depth_margin == mission.depth_margin &&
       mission_->climb_to == mission.climb_to && mission_->dive_depth == mission.dive_depth &&
       mission_->horizontal_speed == mission.horizontal_speed && mission_->glide_angle == mission.glide_angle &&
       mission_->stint == mission.stint &&

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/utc.hpp"
+#include "core/chart/bathymetry.hpp"
 #include "core/chart/coast.hpp"
 #include "core/ocean/freshness.hpp"
 #include "daemon/ingest_client.hpp"
@@ -138,11 +139,34 @@ std::vector<std::string> leave_out_expired(const OceanOrder& order, std::vector<
   return notes;
 }
 
+using Bottom = std::shared_ptr<const chart::Bathymetry>;
+
+/// The bathymetry of a mission; null when it has none.
+Expected<Bottom, std::string> load_bathymetry(const mission::Mission& m, world::Files& files,
+                                              std::optional<verify::InputFile>& input) {
+  if (m.bathymetry_file.empty()) return Bottom{};
+  const auto bytes = files.read(m.bathymetry_file, chart::Bathymetry::kLargestFile);
+  if (!bytes) return unexpected("safety.bathymetry: " + bytes.error().message());
+  auto bottom = chart::Bathymetry::parse(*bytes);
+  if (!bottom) return unexpected("safety.bathymetry " + m.bathymetry_file + ": " + bottom.error());
+  input = verify::InputFile{m.bathymetry_file, Sha256::of(std::string_view{*bytes})};
+  return std::move(bottom).value();
+}
+
+/// Where a glider turns by its altimeter, `margin` above the bottom.
+ocean::TurningDepth turning_depth(const Bottom& bottom, Metres margin) {
+  if (!bottom) return {};
+  return [bottom, margin](double lat, double lon) { return bottom->depth(lat, lon) - margin.si(); };
+}
+
 OceanResult assemble(const OceanOrder& order, std::vector<Read> reads, world::Files& files) {
   const auto box = box_of(order);
   auto formulas = formulas_of(order, box);
   if (!formulas) return unexpected(formulas.error());
   const auto& m = order.mission;
+  std::optional<verify::InputFile> ignored;
+  const auto bottom = load_bathymetry(m, files, ignored);
+  if (!bottom) return unexpected(bottom.error());
   const bool composite = !m.currents.sources.empty();
   auto notes = leave_out_expired(order, reads);
   std::vector<ocean::ForecastSource> sources;
@@ -151,7 +175,8 @@ OceanResult assemble(const OceanOrder& order, std::vector<Read> reads, world::Fi
   const auto profile =
       ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
   auto forecast = sources.empty() ? ocean::Forecast::prepare(*formulas)
-                                  : ocean::Forecast::prepare(sources, seams, profile, *formulas);
+                                  : ocean::Forecast::prepare(sources, seams, profile, *formulas,
+                                                            turning_depth(*bottom, m.depth_margin));
   if (!forecast) return unexpected(forecast.error().message());
 
   OceanSource ocean{std::move(forecast).value(), {}, {}, m.currents.analytic, order.start, box, {}, {}};
@@ -359,6 +384,10 @@ Expected<std::shared_ptr<const ChartSource>, std::string> load_chart(const missi
     parts.coast = std::move(coast).value();
     source->coast = verify::InputFile{mission.coast_file, Sha256::of(std::string_view{*bytes})};
   }
+  auto bottom = load_bathymetry(mission, files, source->bathymetry);
+  if (!bottom) return unexpected(bottom.error());
+  parts.bathymetry = std::move(bottom).value();
+  parts.least_depth = source->least_depth = mission.least_depth();
   source->chart = chart::Chart{std::move(parts)};
   return std::shared_ptr<const ChartSource>{std::move(source)};
 }

@@ -76,16 +76,23 @@ std::optional<Current> mean_along(const OceanSource& ocean, const mission::Dive&
 
 /// What a mission's chart is made of.
 struct ChartOrder {
-  std::string coast_file;
+  std::string coast_file, bathymetry_file;
+  Metres least_depth;
   std::vector<chart::Area> keep_in, keep_out;
-  explicit ChartOrder(const mission::Mission& m) : coast_file{m.coast_file}, keep_in{m.keep_in}, keep_out{m.keep_out} {}
+  explicit ChartOrder(const mission::Mission& m)
+      : coast_file{m.coast_file},
+        bathymetry_file{m.bathymetry_file},
+        least_depth{m.least_depth()},
+        keep_in{m.keep_in},
+        keep_out{m.keep_out} {}
   friend bool operator==(const ChartOrder&, const ChartOrder&) = default;
 };
 
-/// The chart of a mission: coast file and areas.
+/// The chart of a mission: coast file, bathymetry and areas.
 struct ChartSource {
   chart::Chart chart;
-  std::optional<verify::InputFile> coast;
+  std::optional<verify::InputFile> coast, bathymetry;
+  Metres least_depth{};
   std::vector<chart::Area> keep_in, keep_out;
 };
 Expected<std::shared_ptr<const ChartSource>, std::string> load_chart(const mission::Mission& mission,

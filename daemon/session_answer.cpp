@@ -90,6 +90,8 @@ verify::VerifyRequest Session::verify_request(const mission::Verify& e) const {
   if (asked == asked_.end()) return request;
   put_ocean(*asked->second.ocean, request);
   request.coast = asked->second.chart->coast;
+  request.bathymetry = asked->second.chart->bathymetry;
+  request.least_depth = asked->second.chart->least_depth;
   request.keep_in = asked->second.chart->keep_in;
   request.keep_out = asked->second.chart->keep_out;
   return request;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/chart/areas.hpp"
+#include "core/chart/bathymetry.hpp"
 #include "core/chart/clearance_raster.hpp"
 #include "core/chart/coast.hpp"
 
@@ -74,12 +75,16 @@ RasterBox box_of(const CoastArea& area) {
 
 struct Chart::Parts {
   std::shared_ptr<const Coast> coast;
+  std::shared_ptr<const Bathymetry> bathymetry;
+  double least_depth{};
   std::vector<Region> keep_in, keep_out;
   bool bounded{};  ///< there are keep-in areas
   ClearanceRaster raster{kHorizon};
 
   explicit Parts(ChartSources sources)
       : coast{std::move(sources.coast)},
+        bathymetry{std::move(sources.bathymetry)},
+        least_depth{sources.least_depth.si()},
         keep_in{regions_of(sources.keep_in)},
         keep_out{regions_of(sources.keep_out)},
         bounded{!sources.keep_in.empty()} {
@@ -90,6 +95,7 @@ struct Chart::Parts {
   [[nodiscard]] double clearance(double lat, double lon, double at_most) const;
   [[nodiscard]] double inside_keep_in(double lat, double lon, const Space& p, double at_most) const;
   [[nodiscard]] bool allowed(double lat, double lon) const;
+  [[nodiscard]] bool is_deep(const Segment& way) const;
   [[nodiscard]] bool is_clear(const Segment& way, double margin) const;
   [[nodiscard]] bool piece_is_clear(const Segment& way, double from, double to, double margin) const;
   [[nodiscard]] bool kept_in(const Segment& way, double from, double to, double margin) const;
@@ -183,6 +189,18 @@ bool Chart::Parts::piece_is_clear(const Segment& way, double from, double to, do
   return !bounded || kept_in(way, from, to, margin);
 }
 
+bool Chart::Parts::is_deep(const Segment& way) const {
+  if (bathymetry->is_deep_along(way.lat, way.lon, way.lat_at(1), way.lon_at(1), least_depth)) return true;
+  const double begin = bathymetry->depth(way.lat, way.lon), end = bathymetry->depth(way.lat_at(1), way.lon_at(1));
+  if (begin >= least_depth || !(end > begin)) return false;
+  const auto& grid = bathymetry->grid();
+  const double cells = std::max(std::abs(way.dlat) / grid.lat_step_deg, std::abs(way.dlon) / grid.lon_step_deg);
+  const int looks = static_cast<int>(std::min(1000.0, std::ceil(4 * cells * 180 / kPi)));
+  for (int k = 1; k < looks; ++k)
+    if (bathymetry->depth(way.lat_at(double(k) / looks), way.lon_at(double(k) / looks)) < begin) return false;
+  return true;
+}
+
 bool Chart::Parts::is_clear(const Segment& way, double margin) const {
   // A way that begins and ends on the right side and touches no border on it stays on the right side. (On which side it
   // is of the keep-in areas, each piece looks for itself.)
@@ -253,6 +271,9 @@ Metres Chart::distance_to_coast(GeoPoint p) const {
   return Metres{coast.covers(lat, lon) && coast.land().contains(lat, lon) ? -distance : distance};
 }
 
+const Bathymetry* Chart::bathymetry() const { return parts_ ? parts_->bathymetry.get() : nullptr; }
+Metres Chart::least_depth() const { return Metres{bathymetry() ? parts_->least_depth : 0.0}; }
+
 double Chart::clearance_at_least(double lat, double lon) const {
   if (!parts_) return std::isfinite(lat) && std::isfinite(lon) ? kHorizon : -kHorizon;
   return parts_->raster.at_least(lat, lon);
@@ -266,6 +287,7 @@ bool Chart::segment_is_clear(double lat0, double lon0, double lat1, double lon1,
 bool Chart::segment_is_clear(double lat0, double lon0, double clearance0, double lat1, double lon1, double clearance1,
                              double margin) const {
   const Segment way{lat0, lon0, lat1 - lat0, folded(lon1 - lon0)};
+  if (parts_ && parts_->bathymetry && !parts_->is_deep(way)) return false;
   const double room0 = clearance0 - margin, room1 = clearance1 - margin;
   if (room0 >= 0 && room1 >= 0 && room0 + room1 >= ClearanceRaster::length_at_most(lat0, way.dlat, way.dlon))
     return true;

@@ -8,10 +8,11 @@
 
 #include "core/base/geo.hpp"
 
-/// Where a glider may be: coast and areas.
+/// Where a glider may be: coast, areas and depth of water.
 namespace glidehelm::chart {
 
-class Coast;  // coast.hpp
+class Bathymetry;  // bathymetry.hpp
+class Coast;       // coast.hpp
 
 /// A closed polygon of an operating or forbidden area: vertices in order, the last joins the first; edges are geodesics
 /// (to 0.1 m; at latitudes where the sides reach beyond 80°, to 1 m); may cross the antimeridian; at least three
@@ -27,6 +28,8 @@ struct Area {
 struct ChartSources {
   std::shared_ptr<const Coast> coast;
   std::vector<Area> keep_in, keep_out;
+  std::shared_ptr<const Bathymetry> bathymetry{};  ///< none: depths are not judged
+  Metres least_depth{};                            ///< of the water, with bathymetry
 };
 
 /// Land and areas with distance queries. Immutable, const calls are safe from several threads. Radians and metres; any
@@ -73,12 +76,18 @@ class Chart {
   /// margin 0 a segment may touch a border but not cross it. False when `margin` exceeds kHorizon or anything is not
   /// finite. The fast answers come from a raster of lower bounds (tens of ns); only near a limit is geometry asked
   /// (some µs). Meant for segments up to 60 km; longer ones are answered as exactly.
+  ///
+  /// With bathymetry the water along it must also be `least_depth` deep (Bathymetry::is_deep_along; unknown is not). A
+  /// segment that begins in shallower water may only lead out of it: it ends deeper than it began and, looked at every
+  /// quarter of a cell, is nowhere shallower than at its beginning. `clearance` knows nothing of depths.
   [[nodiscard]] bool segment_is_clear(double lat0, double lon0, double lat1, double lon1, double margin) const;
   /// The same, when the caller already knows the clearance of both ends or a lower bound of it (a planner keeps it):
   /// accepts at once when the two discs of clearance cover the segment, else asks as above. Never rejects because of
   /// them: an end that is known to be too near needs no call.
   [[nodiscard]] bool segment_is_clear(double lat0, double lon0, double clearance0, double lat1, double lon1,
                                       double clearance1, double margin) const;
+  [[nodiscard]] const Bathymetry* bathymetry() const;  ///< null: depths are not judged
+  [[nodiscard]] Metres least_depth() const;            ///< 0 without bathymetry
   /// Lower bound of the clearance from the raster alone: one array read. In water it is below the truth by at most the
   /// larger of one raster cell's diagonal (cells are 250 m, or larger so that there are at most 2^20) and a quarter of the
   /// clearance; on the wrong side of a border it may be far below.

@@ -106,9 +106,14 @@ struct Mission {
   std::uint64_t seed{1};            ///< planning.seed
   planning::LatticeChoice lattice;  ///< planning.astar
 
-  std::string coast_file;              ///< safety.coast; empty: the model's mask, with a warning
-  Metres min_distance_to_coast{2000};  ///< safety.min_distance_to_coast_m
-  Metres depth_margin{20};             ///< safety.depth_margin_m: under each yo; not judged before bathymetry is read
+  std::string coast_file;                 ///< safety.coast; empty: the model's mask, with a warning
+  Metres min_distance_to_coast{2000};     ///< safety.min_distance_to_coast_m
+  std::string bathymetry_file;            ///< safety.bathymetry; empty: depths of water are not judged
+  std::optional<Metres> min_water_depth;  ///< safety.min_water_depth_m
+  Metres depth_margin{20};                ///< safety.depth_margin_m: the glider turns this far above the bottom
+  /// The shallowest water that a track may cross: the glider must be able to climb to `climb_to` and turn `depth_margin`
+  /// above the bottom.
+  [[nodiscard]] Metres least_depth() const { return min_water_depth.value_or(climb_to + depth_margin); }
   std::vector<chart::Area> keep_in, keep_out;  ///< safety.keep_in, safety.keep_out
   std::optional<Metres> max_wpt_distance;      ///< safety.max_wpt_distance_m: the abend limit of the glider's mission
 

@@ -29,6 +29,16 @@ DiveProfile DiveProfile::of_stint(Metres climb_to, Metres dive_depth, MetresPerS
   return {climb_to, dive_depth, 1, 1 + (way - outer) / inner};
 }
 
+DiveProfile DiveProfile::turned_at(Metres depth) const {
+  if (depth >= lower) return *this;
+  const double way = upper.si() * above + (lower.si() - upper.si()) * below;
+  if (depth <= upper) {
+    // Nothing is flown above `upper` of a plain mean either; at a bottom above it, the mean of what there is.
+    return {depth, depth, way / depth.si(), 0};
+  }
+  return {upper, depth, above, (way - upper.si() * above) / (depth.si() - upper.si())};
+}
+
 std::vector<double> column_weights(std::span<const double> depths_m, std::size_t wet, const DiveProfile& profile) {
   std::vector<double> weights(depths_m.size(), 0.0);
   const double bottom = depths_m[wet - 1], upper = profile.upper.si(), lower = std::min(profile.lower.si(), bottom);
@@ -53,7 +63,7 @@ std::vector<double> column_weights(std::span<const double> depths_m, std::size_t
   return weights;
 }
 
-Grid depth_average(const GridView& grid, const DiveProfile& profile) {
+Grid depth_average(const GridView& grid, const DiveProfile& profile, const TurningDepth& turning) {
   Grid mean{grid.axes, grid.facts, {}};
   const std::size_t levels = grid.axes.depths_m.size(), times = grid.axes.times_s.size();
   const std::size_t plane = grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
@@ -67,6 +77,18 @@ Grid depth_average(const GridView& grid, const DiveProfile& profile) {
   }
   std::vector<std::vector<double>> weights(levels + 1);
   for (std::size_t wet = 1; wet <= levels; ++wet) weights[wet] = column_weights(grid.axes.depths_m, wet, profile);
+
+  // Columns over a near bottom have weights of their own: index into `weights`, by the number of wet levels.
+  std::vector<std::size_t> own(plane, 0);
+  for (std::size_t n = 0; turning && n < plane; ++n) {
+    const std::size_t row = n / grid.axes.lons_deg.size(), column = n % grid.axes.lons_deg.size();
+    const double depth = turning(degrees(grid.axes.lats_deg[row]).si(), degrees(grid.axes.lons_deg[column]).si());
+    if (!std::isfinite(depth) || depth <= 0 || depth >= profile.lower.si()) continue;
+    own[n] = weights.size();
+    for (std::size_t wet = 0; wet <= levels; ++wet)
+      weights.push_back(wet == 0 ? std::vector<double>{}
+                                 : column_weights(grid.axes.depths_m, wet, profile.turned_at(Metres{depth})));
+  }
 
   // A mean is borrowed where a level of its column is.
   std::vector<bool> filled(grid.filled.empty() ? 0 : plane * times, false);
@@ -85,14 +107,14 @@ Grid depth_average(const GridView& grid, const DiveProfile& profile) {
     // Level by level, so that memory is read in its order.
     for (std::size_t k = 0; k < levels; ++k)
       for (std::size_t n = 0; n < plane; ++n) {
-        if (k >= wet[n] || weights[wet[n]].empty()) continue;
-        const double weight = weights[wet[n]][k];
+        if (k >= wet[n] || weights[own[n] + wet[n]].empty()) continue;
+        const double weight = weights[own[n] + wet[n]][k];
         sums[2 * n] += weight * static_cast<double>(column[2 * (k * plane + n)]);
         sums[2 * n + 1] += weight * static_cast<double>(column[2 * (k * plane + n) + 1]);
       }
     float* out = mean.values.data() + t * plane * 2;
     for (std::size_t n = 0; n < plane; ++n) {
-      if (wet[n] == 0 || weights[wet[n]].empty()) continue;
+      if (wet[n] == 0 || weights[own[n] + wet[n]].empty()) continue;
       out[2 * n] = static_cast<float>(sums[2 * n]);
       out[2 * n + 1] = static_cast<float>(sums[2 * n + 1]);
     }

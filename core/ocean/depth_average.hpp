@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct DiveProfile {
                               Seconds stint);
   /// The plain mean between two depths.
   static DiveProfile between(Metres upper, Metres lower) { return {upper, lower, 0, 1}; }
+  /// The same glider where it turns at `depth` already (by altimeter): it sinks and climbs as far in the same time, so the
+  /// integral of the density stays; more yos share the water between `upper` and `depth`. Where `depth` is not below
+  /// `upper` the whole time is spent evenly above it. Unchanged when `depth` is at or below `lower`. Precondition:
+  /// depth > 0.
+  [[nodiscard]] DiveProfile turned_at(Metres depth) const;
   friend bool operator==(const DiveProfile&, const DiveProfile&) = default;
 };
 
@@ -34,10 +40,14 @@ struct DiveProfile {
 /// weights sum to 1. Empty when the profile has no time in that part of the column. Precondition: 0 < wet ≤ depths.size().
 std::vector<double> column_weights(std::span<const double> depths_m, std::size_t wet, const DiveProfile& profile);
 
+/// Depth in metres at which a glider turns at a position (radians) because the bottom is near; not finite or not positive:
+/// unknown, the profile is flown in full.
+using TurningDepth = std::function<double(double lat, double lon)>;
+
 /// The mean current over a dive, column by column, as a grid without depths: what moves a diving glider in two
 /// dimensions. A column ends at its first dry level (the glider turns at the bottom); a column without water, or without
 /// any part of the profile in its water, has no value. A grid with one level is returned as it is. Time and space are
-/// left alone. O(values).
-Grid depth_average(const GridView& grid, const DiveProfile& profile);
+/// left alone. With `turning`, each column is averaged over the profile turned there. O(values).
+Grid depth_average(const GridView& grid, const DiveProfile& profile, const TurningDepth& turning = {});
 
 }  // namespace glidehelm::ocean

@@ -94,10 +94,11 @@ struct Prepared {
   GriddedField dive, surface, full;
 };
 
-Expected<Prepared, ForecastError> prepare_source(const ForecastSource& source, const DiveProfile& profile) {
+Expected<Prepared, ForecastError> prepare_source(const ForecastSource& source, const DiveProfile& profile,
+                                                 const TurningDepth& turning) {
   GriddedField full{source.grid, source.options, source.keep_alive};
   if (source.grid.axes.depths_m.size() == 1) return Prepared{full, full, full};
-  Grid mean = depth_average(source.grid, profile);
+  Grid mean = depth_average(source.grid, profile, turning);
   if (statistics_of(view_of(mean)).wet_fraction == 0)
     return unexpected(ForecastError{"no column has a current within the dive"});
   return Prepared{GriddedField{std::move(mean), source.options}, full.shallowest(), full};
@@ -158,13 +159,15 @@ Sha256 provenance_of(const std::vector<ForecastSource>& sources, const Seams& se
 Expected<Forecast, ForecastError> Forecast::prepare(const GridView& grid, const DiveProfile& profile,
                                                     const GriddedOptions& options,
                                                     std::shared_ptr<const void> keep_alive,
-                                                    const std::vector<AnalyticField>& added) {
-  return prepare({ForecastSource{{}, grid, options, std::move(keep_alive)}}, Seams{}, profile, added);
+                                                    const std::vector<AnalyticField>& added,
+                                                    const TurningDepth& turning) {
+  return prepare({ForecastSource{{}, grid, options, std::move(keep_alive)}}, Seams{}, profile, added, turning);
 }
 
 Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<ForecastSource>& sources, const Seams& seams,
                                                     const DiveProfile& profile,
-                                                    const std::vector<AnalyticField>& added) {
+                                                    const std::vector<AnalyticField>& added,
+                                                    const TurningDepth& turning) {
   if (sources.empty()) return unexpected(ForecastError{"no source was given"});
   const auto& only = sources.front();
   const bool several = sources.size() > 1;
@@ -176,7 +179,7 @@ Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<ForecastSo
     const auto wrong = [&](const ForecastError& error) {
       return unexpected(ForecastError{several ? "source '" + source.name + "': " + error.what : error.what});
     };
-    auto fields = prepare_source(source, profile);
+    auto fields = prepare_source(source, profile, turning);
     if (!fields) return wrong(fields.error());
     if (auto error = add_facts(source, fields->full, several, facts)) return wrong(*error);
     if (!source.name.empty()) facts.sources.push_back(source.name);

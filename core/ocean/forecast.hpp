@@ -52,16 +52,18 @@ class Forecast {
 
   /// From a grid. `keep_alive` owns the grid's bytes (a mapping). A two-dimensional grid is used in place; of a grid with
   /// depths the dive mean is computed and owned (O(values), once). Analytic fields are added to it, on its box. Refused:
-  /// no water at all, or a current faster than kRefusedSpeed.
+  /// no water at all, or a current faster than kRefusedSpeed. `turning`: where the bottom limits the dive.
   static Expected<Forecast, ForecastError> prepare(const GridView& grid, const DiveProfile& profile,
                                                    const GriddedOptions& options,
                                                    std::shared_ptr<const void> keep_alive,
-                                                   const std::vector<AnalyticField>& added = {});
+                                                   const std::vector<AnalyticField>& added = {},
+                                                   const TurningDepth& turning = {});
   /// From sources in order of trust (at least one), one over the other as CompositeField has it; one that counts everywhere
   /// and always is as above. What is wrong with them taken together is a warning.
   static Expected<Forecast, ForecastError> prepare(const std::vector<ForecastSource>& sources, const Seams& seams,
                                                    const DiveProfile& profile,
-                                                   const std::vector<AnalyticField>& added = {});
+                                                   const std::vector<AnalyticField>& added = {},
+                                                   const TurningDepth& turning = {});
   /// From analytic fields alone (at least one).
   static Expected<Forecast, ForecastError> prepare(const std::vector<AnalyticField>& fields);
 

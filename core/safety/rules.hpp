@@ -39,6 +39,7 @@ struct Evidence {
 /// | 1 reach           | largest distance to a waypoint steered to          | ≤ 0.9·max_wpt_distance, or NaN  | m       |
 /// | 2 flight          | hours flown before the flight ended                | NaN (the end must be allowed)   | h       |
 /// | 2 land            | smallest distance to the coast on the track        | ≥ coast_margin                  | m       |
+/// | 2 depth           | shallowest water on the track                      | ≥ Chart::least_depth            | m       |
 /// | 2 areas           | smallest clearance on the track                    | ≥ 0                             | m       |
 /// | 2 tail            | the same, four flights: stint ±5 %, speed −10/+5 % | ≥ 0                             | m       |
 /// | 5 surfacing       | seconds between dossier fix and surfacing's fix    | ≤ 1                             | s       |
@@ -69,6 +70,10 @@ struct Rule {
 ///    coast file does not chart counts as land. After the arrival in the goal radius only land itself counts: at the
 ///    first surfacing inside it a new list goes out, and the closing leg of a loop, which is flown to the horizon, then
 ///    only has to miss the shore. Without a coast file the field's own land, which ends a flight, is all there is.
+///  - "2 depth" judges the water under every piece of the same track, at the surface too: a glider that cannot dive drifts.
+///    Unknown is land. A start in shallower water (or unknown) may not come into water more than 1 m shallower than at the
+///    first dive until it is outside. After the arrival the water must only be known and no land, and so in "2 tail".
+///    Without bathymetry it is not judged, and the margin says so.
 ///  - "2 flight": the horizon, 60 stints, the end of a waiting list are allowed ends; the end of the forecast's time
 ///    after the second surfacing, since "forecast cover" judges that; after an arrival everything but land.
 ///  - "2 tail" flies 72 h (T_silence of trust.md V-12): lost calls with another stint length and another speed.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/chart/bathymetry.hpp"
 #include "core/safety/margins.hpp"
 
 namespace glidehelm::safety {
@@ -14,6 +15,8 @@ namespace {
 constexpr double kTailSeconds = 72 * 3600.0;
 constexpr double kChartSlack = 10.0;
 constexpr double kLongestStep = 350.0;
+/// Waves of the bottom that a way out of shallow water may cross.
+constexpr double kDepthSlack = 1.0;
 
 /// True when some water within `margin` is not charted: what lies there may be land.
 bool uncharted_within(const GeoPoint& p, double margin, const chart::Chart& chart) {
@@ -41,6 +44,36 @@ std::size_t first_dive(std::span<const TrackPoint> track) {
 std::string place(const TrackPoint& p, const Dossier& d) {
   return sentence("%.5f, %.5f in stint %d, %.1f h after the fix", p.at().lat.degrees(), p.at().lon.degrees(),
                   p.stint + 1, (p.t_s - d.fix_s) / 3600);
+}
+
+/// Follows track points [first, last): the shallowest water once deeper than `least`, or where it failed.
+Kept keeps_depth(std::span<const TrackPoint> track, std::size_t first, std::size_t last, double least,
+                 const chart::Bathymetry& bottom) {
+  Kept kept{true, std::numeric_limits<double>::infinity(), first};
+  if (first >= last) return kept;
+  const double begin = bottom.depth(track[first].lat, track[first].lon);
+  bool outside = begin >= least;
+  Kept inside{true, begin, first};
+  if (outside) kept.found = begin;
+  for (std::size_t i = first + 1; i < last; ++i) {
+    const auto &a = track[i - 1], &b = track[i];
+    if (!outside) {
+      const double here = bottom.depth(b.lat, b.lon);
+      inside = {here >= begin - kDepthSlack, here, i};
+      if (!inside.holds) return inside;
+      outside = here >= least;
+      continue;
+    }
+    if (bottom.is_deep_along(a.lat, a.lon, b.lat, b.lon, std::max(least, kept.found))) continue;
+    const double here = bottom.shoalest_along(a.lat, a.lon, b.lat, b.lon);
+    // The first piece outside may still hold water of before.
+    const double depth = i > first + 1 && bottom.depth(track[i - 2].lat, track[i - 2].lon) < least
+                             ? std::max(here, bottom.depth(b.lat, b.lon))
+                             : here;
+    if (depth < kept.found) kept.found = depth, kept.where = i;
+    if (depth < least) kept.holds = false;
+  }
+  return outside ? kept : inside;
 }
 
 /// The part of a flight that is judged before and after the arrival.
@@ -138,6 +171,37 @@ Margin judge_land(const Evidence& e) {
   m.message = sentence("%.0f m from the coast at %s, allowed from %.0f m", m.found,
                        place(track[shown.where < track.size() ? shown.where : 0], e.dossier).c_str(), m.limit);
   if (!e.chart.has_coast()) m.message = "no coastline is given: only the forecast's own land is judged";
+  return m;
+}
+
+Margin judge_depth(const Evidence& e) {
+  if (!e.flight) return not_judged("the list was not flown");
+  Margin m;
+  m.unit = "m";
+  m.found = m.limit = kNoNumber;
+  const auto* bottom = e.chart.bathymetry();
+  if (bottom == nullptr) {
+    m.holds = true;
+    m.message = "no bathymetry is given: the depth of the water is not judged";
+    return m;
+  }
+  const std::span<const TrackPoint> track{e.flight->track};
+  const std::size_t arrival = std::min(e.flight->arrival_index, track.size()), dive = first_dive(track);
+  const double least = e.chart.least_depth().si();
+  const auto before = keeps_depth(track, dive, arrival, least, *bottom);
+  const auto after = keeps_depth(track, std::max(arrival, dive), track.size(), 0.0, *bottom);
+  m.holds = before.holds && after.holds && after.found > 0;
+  const bool shown_after = before.holds && !m.holds;
+  const auto& shown = shown_after ? after : before;
+  m.limit = shown_after ? 0.0 : least;
+  const auto where = place(track[std::min(shown.where, track.size() - 1)], e.dossier);
+  if (std::isfinite(shown.found)) {
+    m.found = shown.found;
+    m.message = sentence("%.0f m of water at %s, allowed from %.0f m", m.found, where.c_str(), m.limit);
+  } else {
+    m.message = before.holds && m.holds ? "nothing was flown before the arrival"
+                                        : "the depth of the water is not known at " + where + ", so it may be land";
+  }
   return m;
 }
 

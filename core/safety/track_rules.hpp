@@ -7,6 +7,7 @@ namespace glidehelm::safety {
 // The rules on the re-flown track ("2 …"); what they find and allow stands in rules.hpp.
 Margin judge_flight(const Evidence& evidence);
 Margin judge_land(const Evidence& evidence);
+Margin judge_depth(const Evidence& evidence);
 Margin judge_areas(const Evidence& evidence);
 Margin judge_tail(const Evidence& evidence);
 

@@ -173,6 +173,8 @@ verify::VerifyRequest verify_request(const Case& c, const mission::Candidate& fo
   d.deadline_s = p.start.fix_s + c.mission.window_max.count();
   daemon::put_ocean(*c.ocean, v);
   v.coast = c.chart->coast;
+  v.bathymetry = c.chart->bathymetry;
+  v.least_depth = c.chart->least_depth;
   v.keep_in = c.chart->keep_in;
   v.keep_out = c.chart->keep_out;
   return v;

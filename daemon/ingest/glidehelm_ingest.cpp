@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <iostream>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "core/base/one_line.hpp"
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
+#include "daemon/ingest/depth_file.hpp"
 #include "daemon/ingest/join.hpp"
 #include "daemon/ingest/opendap.hpp"
 #include "daemon/ingest/read_files.hpp"
@@ -18,6 +21,8 @@
 
 // glidehelm-ingest FILE… -o GRID: published forecasts in, one flat grid out. Exit 0 done, 1 refused, 2 usage, 3 more memory
 // is needed than there is, 4 refused before (--refused-before), 5 not to be had now: a later try may succeed.
+//
+// glidehelm-ingest --bathymetry FILE -o DEPTHS: a bathymetry in, a `.depth` file (core/chart/bathymetry.hpp) out. Exit 0, 1, 2, 3.
 //
 // With --tell, what it is doing stands on standard output, so that whoever started it knows which file it died of:
 //   source N SHA256 DEVICE INODE SIZE MODIFIED_NS CHANGED_NS    file N (from 0) was copied; it looked like that. Of an
@@ -36,7 +41,8 @@ struct Arguments {
   std::vector<std::string> files, grid_files;
   std::string output, variables, epoch, area, heights, equator_band, fill_gaps, rotation, s_levels;
   double settle_s{};
-  bool refused_before{}, tell{};
+  std::string positive, crs, depth_variable;
+  bool refused_before{}, tell{}, bathymetry{};
 };
 
 /// Says what comes next, at once: the next thing may be the last.
@@ -285,6 +291,55 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
+constexpr std::size_t kPrjAtMost = 65'536;
+
+/// Reads one bathymetry behind the same walls, and says what was decided about it.
+int run_bathymetry(const Arguments& arguments) {
+  ReadOptions common;
+  if (const auto wrong = read_options(arguments, common)) return misuse(*wrong);
+  if (arguments.files.size() != 1) return misuse("--bathymetry takes one FILE");
+  DepthOptions options;
+  using Positive = DepthOptions::Positive;
+  options.positive = arguments.positive == "up"     ? Positive::up
+                     : arguments.positive == "down" ? Positive::down
+                                                    : Positive::unknown;
+  options.crs = arguments.crs;
+  options.variable = arguments.depth_variable;
+  options.area = common.area;
+  world::RealFiles files;
+  world::RealRng rng;
+  const auto units = Units::load();
+  if (!units) return refuse(units.error().what);
+  const std::string& name = arguments.files.front();
+  const auto dot = name.rfind('.');
+  if (auto prj = files.read(name.substr(0, dot) + ".prj", kPrjAtMost)) options.prj = std::move(*prj);
+  auto sources = Sources::open(arguments.files, kFileAtMost);
+  if (!sources) return refuse(name + ": " + sources.error().what);
+  if (auto entered = enter_sandbox(folder_of(arguments.output), false); !entered) return refuse(entered.error());
+  if (auto identified = sources->identify(Seconds{arguments.settle_s}, kKeptAtMost); !identified)
+    return refuse(*sources, identified.error());
+  const auto bytes = sources->take(0);
+  if (!bytes) return refuse(*sources, bytes.error());
+  auto grid = read_depths(*bytes, options, *units);
+  if (!grid) return refuse(name + ": " + grid.error().what);
+  grid->source += ", sha256 " + sources->identities().front().hash.hex();
+  if (auto written = write_file(files, rng, arguments.output, chart::Bathymetry::text_of(*grid)); !written)
+    return refuse(arguments.output + ": " + written.error().message());
+  std::size_t known = 0;
+  float shoalest = std::numeric_limits<float>::infinity(), deepest = -shoalest;
+  for (const float depth : grid->depths_m)
+    if (!std::isnan(depth)) {
+      ++known;
+      shoalest = std::min(shoalest, depth);
+      deepest = std::max(deepest, depth);
+    }
+  std::cout << one_line(name) << ": " << grid->source << "\n  " << grid->decided << "\n  " << grid->columns << " by "
+            << grid->rows << " nodes from " << grid->west_deg << " E, " << grid->south_deg << " N, steps "
+            << grid->lon_step_deg << ", " << grid->lat_step_deg << " degrees; depths " << shoalest << " to " << deepest
+            << " m; " << known << " of " << grid->depths_m.size() << " nodes known\n";
+  return 0;
+}
+
 }  // namespace
 
 #if defined(__SANITIZE_ADDRESS__)
@@ -322,6 +377,14 @@ int main(int argc, char** argv) {
                  "velocities along a model's axes, turned by its angle or by its grid; or none: east and north");
   app.add_option("--s-levels", arguments.s_levels,
                  "s-levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
+  app.add_flag("--bathymetry", arguments.bathymetry,
+               "FILE holds depths (NetCDF or ESRI ASCII): write the depth file that safety.bathymetry names");
+  app.add_option("--positive", arguments.positive,
+                 "with --bathymetry: what its numbers mean: up (heights), down (depths)")
+      ->check(CLI::IsMember({"up", "down"}));
+  app.add_option("--crs", arguments.crs,
+                 "with --bathymetry: where an ASCII grid lies: degrees, utm33n, EPSG:32633 (else its .prj file)");
+  app.add_option("--depth-variable", arguments.depth_variable, "with --bathymetry: name of the variable");
   app.add_option("--area", arguments.area, "part to keep, degrees: W/E/S/N");
   try {
     app.parse(argc, argv);
@@ -330,7 +393,7 @@ int main(int argc, char** argv) {
     return code == 0 ? 0 : 2;
   }
   try {
-    return run(arguments);
+    return arguments.bathymetry ? run_bathymetry(arguments) : run(arguments);
   } catch (const std::bad_alloc&) {
     refuse(arguments.files.front() + ": needs more memory than there is");
     return kMemory;

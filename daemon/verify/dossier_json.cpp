@@ -18,6 +18,7 @@ void members(VerifyRequest& r, F&& f) {
   f("dossier", r.dossier), f("grid", r.grid), f("grid_options", r.grid_options);
   f("sources", r.sources), f("seams", r.seams), f("analytic", r.analytic);
   f("analytic_start_ms", r.analytic_start), f("analytic_box", r.analytic_box), f("coast", r.coast);
+  f("bathymetry", r.bathymetry), f("least_depth_m", r.least_depth);
   f("keep_in", r.keep_in), f("keep_out", r.keep_out);
 }
 

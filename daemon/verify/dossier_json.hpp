@@ -49,7 +49,8 @@ struct VerifyRequest {
   std::vector<ocean::AnalyticSpec> analytic;
   Instant analytic_start;  ///< t0 of specifications that name none
   ocean::Coverage analytic_box;
-  std::optional<InputFile> coast;
+  std::optional<InputFile> coast, bathymetry;
+  Metres least_depth{};  ///< of the water, with bathymetry
   std::vector<chart::Area> keep_in, keep_out;
   friend bool operator==(const VerifyRequest&, const VerifyRequest&) = default;
 };

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/chart/bathymetry.hpp"
 #include "core/chart/coast.hpp"
 #include "core/ocean/analytic.hpp"
 #include "core/ocean/composite.hpp"
@@ -99,6 +100,17 @@ Expected<chart::ChartSources, InputProblem> open_chart(const VerifyRequest& requ
   for (const auto* areas : {&sources.keep_in, &sources.keep_out})
     for (const auto& area : *areas)
       if (area.vertices.size() < 3) return problem("area '" + area.name + "'", "has fewer than three corners");
+  if (request.bathymetry) {
+    const auto mapping = files.map(request.bathymetry->path);
+    if (!mapping) return problem(request.bathymetry->path, mapping.error().message());
+    const auto bytes = (*mapping)->bytes();
+    if (Sha256::of(bytes) != request.bathymetry->hash)
+      return problem(request.bathymetry->path, "is not the bathymetry that was planned on");
+    auto bottom = chart::Bathymetry::parse(as_text(bytes));
+    if (!bottom) return problem(request.bathymetry->path, bottom.error());
+    sources.bathymetry = std::move(bottom).value();
+    sources.least_depth = request.least_depth;
+  }
   if (!request.coast) return sources;
   const auto mapping = files.map(request.coast->path);
   if (!mapping) return problem(request.coast->path, mapping.error().message());

@@ -40,7 +40,7 @@ start: {lat_deg: , lon_deg: , time: }
 vehicle: {horizontal_speed_m_per_s: 0.30, glide_angle_deg: 26, dive_depth_m: 200, climb_to_m: 20, current_correction: 1, local_frame_rotation_deg: }
 schedule: {stint_h: 4.0, surface_min: 15, first_stint_h: same}
 planning: {method: best, headings: 18, cell_km: auto, budget_s: 20, horizon_h: auto, seed: 1}
-safety: {coast: , min_distance_to_coast_m: 2000, min_water_depth_m: , depth_margin_m: 20, keep_in: [], keep_out: []}
+safety: {coast: , min_distance_to_coast_m: 2000, bathymetry: , min_water_depth_m: , depth_margin_m: 20, keep_in: [], keep_out: []}
 list: {slot: 10, max_waypoints: 8, radius_m: auto, at_end: loop}
 window: {max_min: 15, dockzr_after_s: 120, emit_on: at_surface}
 )";
@@ -76,7 +76,7 @@ vehicle: {horizontal_speed_m_per_s: 0.25, glide_angle_deg: 20, dive_depth_m: 900
 schedule: {stint_h: 8, surface_min: 20, first_stint_h: 2}
 currents: {files: [a.nc, b/*.nc], outside_time: cycle, interpolation: akima, variables: {east: uo, north: vo}, time_epoch: 2000-01-01}
 planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, astar: {neighbours: 24, radius: 2, grid: triangular}}
-safety: {coast: c.coast, min_distance_to_coast_m: 0, depth_margin_m: 30, max_wpt_distance_m: 50000,
+safety: {coast: c.coast, min_distance_to_coast_m: 0, bathymetry: c.depth, min_water_depth_m: 120, depth_margin_m: 30, max_wpt_distance_m: 50000,
          keep_in: [[{lat_deg: -31, lon_deg: 178}, {lat_deg: -31, lon_deg: -178}, {lat_deg: -28, lon_deg: 180}]], keep_out: []}
 list: {slot: 0, max_waypoints: 1, radius_m: 150, at_end: wait}
 window: {max_min: 10, dockzr_after_s: 60, emit_on: connection}
@@ -113,6 +113,8 @@ after_goal: next leg-4
   CHECK(m.coast_file == "c.coast");
   CHECK(m.min_distance_to_coast == Metres{0});
   CHECK(m.depth_margin == Metres{30});
+  CHECK(m.bathymetry_file.find("c.depth") != std::string::npos);
+  CHECK(m.least_depth() == Metres{120});
   CHECK(m.max_wpt_distance == Metres{50000});
   REQUIRE(m.keep_in.size() == 1);
   CHECK(m.keep_in[0].vertices[2] == geo_point(-28, 180));
@@ -206,8 +208,10 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
       {"planning: {astar: {grid: hexagonal}}\n",
        {"7:26 planning.astar.grid: not one of the words; found hexagonal; allowed: regular, irregular, triangular"}},
       {"safety: {min_water_depth_m: 30}\n",
-       {"7:29 safety.min_water_depth_m: depth limits need bathymetry, which this version does not read; leave the key "
-        "out"}},
+       {"7:29 safety.min_water_depth_m: a least depth needs safety.bathymetry, the depth file to judge it on"}},
+      {"safety: {bathymetry: a.depth, min_water_depth_m: 39}\n",
+       {"7:50 safety.min_water_depth_m: 39 m of water leave no room to dive; allowed: at least climb_to_m + "
+        "depth_margin_m = 40"}},
       {"list: {slot: 100}\n", {"7:14 list.slot: out of range; found 100; allowed: 0 to 99"}},
       {"list: {slot: -1}\n", {"7:14 list.slot: out of range; found -1; allowed: 0 to 99"}},
       {"list: {slot: 1.5}\n", {"7:14 list.slot: not a whole number; found 1.5; allowed: 0 to 99"}},

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
 #include "tests/support/fields.hpp"
 
@@ -144,4 +145,53 @@ TEST_CASE("a mean over a filled level is filled") {
   });
   flat.filled = {{1, 2}};
   CHECK(depth_average(view_of(flat), {}).filled == flat.filled);
+}
+
+TEST_CASE("a glider that turns at a near bottom sinks as far in the same time") {
+  const auto profile =
+      DiveProfile::of_stint(Metres{20}, Metres{200}, MetresPerSecond{0.3}, degrees(26), Seconds{14400});
+  for (const double depth : {21.0, 60.0, 150.0, 199.0}) {
+    const auto turned = profile.turned_at(Metres{depth});
+    // The same yo planned for that depth from the start: the way w·T/2 is shared among more yos.
+    const auto planned =
+        DiveProfile::of_stint(Metres{20}, Metres{depth}, MetresPerSecond{0.3}, degrees(26), Seconds{14400});
+    CHECK(turned.upper == planned.upper);
+    CHECK(turned.lower == planned.lower);
+    CHECK(turned.above == Approx(planned.above));
+    CHECK(turned.below == Approx(planned.below));
+  }
+  CHECK(profile.turned_at(Metres{200}) == profile);
+  CHECK(profile.turned_at(Metres{5000}) == profile);
+  const auto shallow = profile.turned_at(Metres{15});
+  const double way = 20 + 180 * profile.below;
+  CHECK(shallow.lower == Metres{15});
+  CHECK(shallow.upper.si() * shallow.above == Approx(way));
+}
+
+TEST_CASE("over a near bottom a current that is linear in depth has the mean of the turned profile") {
+  // u = z/100: the mean of u is the profile's mean depth over 100. Levels from 0 to 300 m in steps of 50 hold it exactly.
+  Grid grid;
+  grid.axes.lats_deg = {40, 41};
+  grid.axes.lons_deg = {5, 6};
+  grid.axes.times_s = {0};
+  grid.axes.depths_m = {0, 50, 100, 150, 200, 250, 300};
+  for (const double z : grid.axes.depths_m)
+    for (int n = 0; n < 4; ++n) {
+      grid.values.push_back(static_cast<float>(z / 100));
+      grid.values.push_back(0.5F);
+    }
+  const DiveProfile profile{Metres{20}, Metres{200}, 1, 5};
+  // Bottom over the four columns: unknown, deep, 80 m, 10 m.
+  const auto turning = [](double lat, double lon) {
+    const bool north = lat > 40.5 * kPi / 180, east = lon > 5.5 * kPi / 180;
+    return !north ? (east ? 900.0 : std::numeric_limits<double>::quiet_NaN()) : (east ? 10.0 : 80.0);
+  };
+  const auto mean = depth_average(view_of(grid), profile, turning);
+  const double full = (20 * 10 + 180 * 5 * 110.0) / (20 + 180 * 5) / 100;
+  const double near = (20 * 10 + 900 * 50.0) / (20 + 900) / 100;  // 180·5 m of way below 20 m, shared by 60 m
+  CHECK(static_cast<double>(mean.values[0]) == Approx(full).epsilon(1e-6));  // float
+  CHECK(static_cast<double>(mean.values[2]) == Approx(full).epsilon(1e-6));
+  CHECK(static_cast<double>(mean.values[4]) == Approx(near).epsilon(1e-6));
+  CHECK(static_cast<double>(mean.values[6]) == Approx(0.05).epsilon(1e-6));
+  for (const std::size_t n : {1U, 3U, 5U, 7U}) CHECK(static_cast<double>(mean.values[n]) == Approx(0.5));
 }

@@ -121,8 +121,8 @@ TEST_CASE("rule 4 format: what the reader refuses is refused with line and colum
   CHECK(m.found == 8);
   CHECK(m.message == "line 8, column 28: initial_wpt is 1, allowed is 0");
   for (const char* rule :
-       {"4 points", "1 waypoints", "1 legs", "1 first leg", "1 neighbours", "1 reach", "2 flight", "2 land", "2 areas",
-        "2 tail", "promise surfacing", "promise arrival", "forecast speed", "forecast values"})
+       {"4 points", "1 waypoints", "1 legs", "1 first leg", "1 neighbours", "1 reach", "2 flight", "2 land", "2 depth",
+        "2 areas", "2 tail", "promise surfacing", "promise arrival", "forecast speed", "forecast values"})
     CHECK_FALSE(margin(verdict, rule).holds);
 }
 

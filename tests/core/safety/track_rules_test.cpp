@@ -1,7 +1,10 @@
 #include "core/safety/track_rules.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
+#include "core/chart/bathymetry.hpp"
 #include "core/chart/coast.hpp"
 #include "tests/core/safety/sample_dossier.hpp"
 
@@ -261,4 +264,68 @@ TEST_CASE("a margin is kept from where the track leaves it, before, the distance
   // an empty range keeps everything
   const chart::Chart chart{{nullptr, {}, {box(start, -100, -100, 100, 100)}}};
   CHECK(keeps_margin(track, 3, 3, 100, Distance::clearance, chart).holds);
+}
+
+namespace {
+
+/// Water around a point whose depth is `deep` but for a band of columns from `band0` to `band1` metres east of it.
+std::shared_ptr<const chart::Bathymetry> bank(const GeoPoint& around, float deep, double band0, double band1,
+                                              float top) {
+  // 0.005 degrees are 556 m northwards; the grid reaches 2 degrees to every side.
+  chart::DepthGrid grid{"test", "made", around.lon.degrees() - 2, around.lat.degrees() - 2, 0.005, 0.005, 801, 801, {}};
+  const double metres = 111'320.0 * std::cos(around.lat.radians());
+  for (std::size_t n = 0; n < 801 * 801; ++n) {
+    const double east = (0.005 * static_cast<double>(n % 801) - 2) * metres;
+    grid.depths_m.push_back(east >= band0 && east <= band1 ? top : deep);
+  }
+  auto made = chart::Bathymetry::make(std::move(grid));
+  if (!made) throw std::runtime_error(made.error());
+  return *made;
+}
+
+/// The good case over a bottom; `from` and `to` are shares of the way east from fix to goal.
+Case over(float deep, double from, double to, float top) {
+  auto c = good_case();
+  const auto& fix = c.dossier.at.fix;
+  const double east = std::remainder(c.dossier.promise.goal.lon.radians() - fix.lon.radians(), 2 * kPi) * 6.37e6 *
+                      std::cos(fix.lat.radians());
+  const double a = std::min(from * east, to * east), b = std::max(from * east, to * east);
+  c.sources.bathymetry = bank(fix, deep, a, b, top);
+  c.sources.least_depth = Metres{40};
+  return c;
+}
+
+constexpr float kUnknownDepth = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
+
+TEST_CASE("rule 2 depth: without bathymetry it holds and says that nothing was judged") {
+  auto c = good_case();
+  const auto m = margin(c.judged(), "2 depth");
+  CHECK(m.holds);
+  CHECK(std::isnan(m.found));
+  CHECK(m.message == "no bathymetry is given: the depth of the water is not judged");
+}
+
+TEST_CASE("rule 2 depth: a bank on the way refuses when it is shallower than the limit, by a metre") {
+  CHECK(over(500, 0.4, 0.6, 41).failing() == "");
+  CHECK(margin(over(500, 0.4, 0.6, 41).judged(), "2 depth").found == Approx(41));
+  CHECK(margin(over(500, 0.4, 0.6, 41).judged(), "2 depth").limit == 40);
+  auto shallow = over(500, 0.4, 0.6, 39);
+  CHECK(shallow.failing() == "2 depth");
+  CHECK(margin(shallow.judged(), "2 depth").found == Approx(39).margin(0.01));
+}
+
+TEST_CASE("rule 2 depth: unknown water and land refuse") {
+  auto unknown = over(500, 0.4, 0.6, kUnknownDepth);
+  CHECK_FALSE(margin(unknown.judged(), "2 depth").holds);
+  CHECK(margin(unknown.judged(), "2 depth").message.find("not known") != std::string::npos);
+  CHECK_FALSE(margin(over(500, 0.4, 0.6, -3).judged(), "2 depth").holds);
+}
+
+TEST_CASE("rule 2 depth: a start in shallow water may leave it, not come into shallower water") {
+  CHECK(over(500, -0.2, 0.2, 30).failing() == "");
+  auto c = over(30, 0.1, 0.2, 20);
+  CHECK_FALSE(margin(c.judged(), "2 depth").holds);
+  CHECK(over(500, -0.2, 0.2, kUnknownDepth).failing() == "");
 }

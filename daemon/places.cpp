@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/chart/areas.hpp"
+#include "core/chart/bathymetry.hpp"
 #include "core/chart/space.hpp"
 
 namespace glidehelm::daemon {
@@ -57,11 +58,28 @@ const Places::Known& Places::coast_of(const std::string& path) {
   return entry->second;
 }
 
+std::vector<config::ConfigError> Places::depth_errors(const mission::Mission& m, const std::string& text,
+                                                      const std::string& file) {
+  if (m.bathymetry_file.empty()) return {};
+  const auto refused = [&](const char* key, const std::string& why) {
+    return std::vector{config::error_at(text, file, key, why)};
+  };
+  const auto bytes = files_.read(m.bathymetry_file, chart::Bathymetry::kLargestFile);
+  if (!bytes) return refused("safety.bathymetry", bytes.error().message());
+  const auto bottom = chart::Bathymetry::parse(*bytes);
+  if (!bottom) return refused("safety.bathymetry", m.bathymetry_file + ": " + bottom.error());
+  const double depth = (*bottom)->depth(m.goal.lat.radians(), m.goal.lon.radians());
+  if (depth > 0) return {};
+  return refused("goal", fmt::format("{:.4f},{:.4f} {}", m.goal.lat.degrees(), m.goal.lon.degrees(),
+                                     depth == chart::Bathymetry::kUnknown ? "has no known depth in safety.bathymetry"
+                                                                          : "is land in safety.bathymetry"));
+}
+
 std::vector<config::ConfigError> Places::errors_of(const mission::Mission& m, const std::string& text,
                                                    const std::string& file) {
   const auto& known = coast_of(m.coast_file);
   if (!known.problem.empty()) return {config::error_at(text, file, "safety.coast", known.problem)};
-  std::vector<config::ConfigError> errors;
+  std::vector<config::ConfigError> errors = depth_errors(m, text, file);
   const auto check = [&](const char* key, GeoPoint p, const std::optional<GeoPoint>& other) {
     const auto trouble = trouble_at(p, known.coast.get(), m);
     if (trouble.empty()) return;

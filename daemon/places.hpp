@@ -28,6 +28,9 @@ class Places {
   std::vector<config::ConfigError> errors_of(const config::Configuration& all);
 
  private:
+  /// A bathymetry that cannot be read, or a goal where it knows no water.
+  std::vector<config::ConfigError> depth_errors(const mission::Mission& m, const std::string& text,
+                                                const std::string& file);
   struct Known {
     std::shared_ptr<const chart::Coast> coast;
     std::string problem;  ///< why there is none, though one is named

@@ -116,7 +116,8 @@ Expected<std::shared_ptr<const Bathymetry>, std::string> Bathymetry::parse(std::
   grid.decided = decided.substr(8);
   if (const auto problem = read_grid_line(shape.substr(5), grid)) return refused(*problem);
   if (next_line(rest) != "values") return refused("line 5 is not 'values'");
-  if (grid.columns > kMostNodes / grid.rows) return refused("line 4: more than " + std::to_string(kMostNodes) + " nodes");
+  if (grid.columns > kMostNodes / grid.rows)
+    return refused("line 4: more than " + std::to_string(kMostNodes) + " nodes");
   const std::size_t nodes = grid.columns * grid.rows, end = 4 * nodes, tail = kLast.size() + 9;
   if (rest.size() != end + tail)
     return refused("after the head stand " + std::to_string(rest.size()) + " bytes, expected " +
@@ -186,8 +187,7 @@ double Bathymetry::bound(const Box& box) const {
   const Level& minima = pyramid_[level];
   float least = std::numeric_limits<float>::infinity();
   for (auto row = r0; row <= r1; ++row)
-    for (auto column = c0; column <= c1; ++column)
-      least = std::min(least, minima.least[row * minima.columns + column]);
+    for (auto column = c0; column <= c1; ++column) least = std::min(least, minima.least[row * minima.columns + column]);
   return static_cast<double>(least);
 }
 

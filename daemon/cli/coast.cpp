@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/text.hpp"
+#include "core/chart/grown_land.hpp"
 #include "daemon/cli/coast_cut.hpp"
 
 namespace glidehelm::cli {
@@ -241,6 +242,23 @@ Expected<std::shared_ptr<const chart::Coast>, std::string> cut_coast(const Coast
   return *std::move(coast);
 }
 
+using CoastPointer = std::shared_ptr<const chart::Coast>;
+
+Expected<CoastPointer, std::string> coast_from(const std::string& path, world::World& world) {
+  const auto bytes = world.files.read(path, chart::Coast::kLargestFile);
+  if (!bytes) return unexpected("--from: " + bytes.error().message());
+  auto coast = chart::Coast::parse(*bytes);
+  if (!coast) return unexpected("--from " + path + ": " + coast.error().message());
+  return std::move(coast).value();
+}
+
+Expected<CoastPointer, std::string> grown(const CoastPointer& coast, const CoastOptions& options) {
+  if (!options.grow_m && !options.simplify_m) return coast;
+  auto land = chart::grown_land(*coast, Metres{options.grow_m.value_or(0)}, Metres{options.simplify_m.value_or(100)});
+  if (!land) return unexpected(land.error().problem);
+  return std::move(land).value();
+}
+
 }  // namespace
 
 Expected<CoastArea, std::string> coast_area(const std::string& text) {
@@ -270,7 +288,11 @@ Expected<CoastArea, std::string> coast_area(const std::string& text) {
 }
 
 int run_coast(const CoastOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
-  const auto area = coast_area(options.area);
+  if (options.area.empty() == options.from.empty()) {
+    err << "glidehelm coast: give either --area (to cut a coast) or --from (to grow or simplify one)\n";
+    return 2;
+  }
+  const auto area = options.from.empty() ? coast_area(options.area) : CoastArea{};
   if (!area) {
     err << "glidehelm coast: " << area.error() << "\n";
     return 2;
@@ -284,7 +306,8 @@ int run_coast(const CoastOptions& options, world::World& world, std::ostream& ou
     err << "glidehelm coast: cannot write " << options.output << ": " << tried.error() << "\n";
     return 1;
   }
-  const auto coast = cut_coast(*area, world, err);
+  const auto cut = options.from.empty() ? cut_coast(*area, world, err) : coast_from(options.from, world);
+  const auto coast = cut ? grown(*cut, options) : cut;
   if (!coast) {
     err << "glidehelm coast: " << coast.error() << "\n";
     return 1;

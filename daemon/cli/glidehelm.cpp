@@ -204,8 +204,21 @@ void add_mafile(CLI::App& app, Action& action) {
 void add_coast(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::CoastOptions>();
   auto* verb = app.add_subcommand("coast", "Cut a coastline from GSHHG full resolution (Debian: gmt, gmt-gshhg-full)");
-  verb->add_option("--area", o->area, "W/E/S/N in degrees, e.g. -19/-12/26.5/30")->required();
+  verb->add_option("--area", o->area, "W/E/S/N in degrees, e.g. -19/-12/26.5/30: cut from GSHHG");
+  verb->add_option("--from", o->from, "Start from this .coast file instead");
+  verb->add_option("--grow", o->grow_m, "Metres: all water this near to land becomes land");
+  verb->add_option(
+      "--simplify", o->simplify_m,
+      "Metres: fewer corners, on the safe side. No land is lost, no water farther from it than --grow plus "
+      "this becomes land, islands stay (100 with --grow alone)");
   verb->add_option("-o,--output", o->output, "The .coast file")->required();
+  verb->footer(
+      "The coast file is what missions name in safety.coast. Cut it once, wider than the operating area: what it does "
+      "not\n"
+      "chart is forbidden. Examples:\n"
+      "  glidehelm coast --area -19/-12/26.5/30 -o canaries.coast\n"
+      "  glidehelm coast --from canaries.coast --grow 3000 --simplify 200 -o canaries-3km.coast\n"
+      "The shore of the second lies 3000 to 3200 m off that of the first, never nearer.");
   verb->callback(
       [o, &action] { action = [o](world::World& w) { return cli::run_coast(*o, w, std::cout, std::cerr); }; });
 }

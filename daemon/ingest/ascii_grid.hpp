@@ -11,10 +11,10 @@ namespace glidehelm::ingest {
 /// An ESRI ASCII grid as it stands in the file.
 struct AsciiGrid {
   std::size_t columns{}, rows{};
-  double x{}, y{};            ///< centre of the south-west cell, in the file's units
-  double dx{}, dy{};          ///< size of a cell
-  bool corner{};              ///< the file gave the corner of the cell (xllcorner)
-  std::vector<double> values; ///< rows from north to south; NaN where NODATA
+  double x{}, y{};             ///< centre of the south-west cell, in the file's units
+  double dx{}, dy{};           ///< size of a cell
+  bool corner{};               ///< the file gave the corner of the cell (xllcorner)
+  std::vector<double> values;  ///< rows from north to south; NaN where NODATA
 };
 
 /// True when a file begins like an ESRI ASCII grid: its first word is `ncols` (any case).

@@ -61,8 +61,7 @@ Result<Done> turn_down(std::vector<double>& values, const Sign& sign) {
     if (!std::isnan(value)) deepest = std::max(deepest, value);
   }
   if (std::isinf(deepest)) return fault("no depth is known anywhere");
-  if (deepest <= 0)
-    return fault("with " + words_of(sign) + ", every place would be land; " + kAskPositive);
+  if (deepest <= 0) return fault("with " + words_of(sign) + ", every place would be land; " + kAskPositive);
   return Done{};
 }
 
@@ -88,7 +87,8 @@ Result<Done> keep(chart::DepthGrid& grid, const Area& area) {
   part.depths_m.clear();
   for (std::size_t r = 0; r < part.rows; ++r) {
     const auto* row = grid.depths_m.data() + (static_cast<std::size_t>(r0) + r) * grid.columns;
-    part.depths_m.insert(part.depths_m.end(), row + static_cast<std::size_t>(c0), row + static_cast<std::size_t>(c1) + 1);
+    part.depths_m.insert(part.depths_m.end(), row + static_cast<std::size_t>(c0),
+                         row + static_cast<std::size_t>(c1) + 1);
   }
   grid = std::move(part);
   return Done{};
@@ -136,8 +136,8 @@ DepthMesh mesh_in_utm(const AsciiGrid& grid, const UtmZone& zone, std::vector<do
   const double central = 6.0 * zone.number - 183.0;
   for (std::size_t row = 0; row < grid.rows; ++row)
     for (std::size_t column = 0; column < grid.columns; ++column) {
-      const auto p = from_utm(zone, grid.x + grid.dx * static_cast<double>(column),
-                              grid.y + grid.dy * static_cast<double>(row));
+      const auto p =
+          from_utm(zone, grid.x + grid.dx * static_cast<double>(column), grid.y + grid.dy * static_cast<double>(row));
       mesh.lats.push_back(p ? p->lat.degrees() : kNaN);
       mesh.lons.push_back(p ? central + std::remainder(p->lon.degrees() - central, 360.0) : kNaN);
     }
@@ -183,8 +183,8 @@ bool is_plane(const NetcdfFile& file, const Variable& variable) {
 int rank_of(const Variable& variable) {
   const std::string standard = lower(variable.text("standard_name")), name = lower(variable.name);
   if (has(standard, "sea_floor_depth") || has(standard, "bathymetry") || standard == "surface_altitude") return 0;
-  for (const auto* known : {"elevation", "z", "depth", "band1", "bathymetry", "topo", "deptho", "altitude", "bathy", "h",
-                            "rose"})
+  for (const auto* known :
+       {"elevation", "z", "depth", "band1", "bathymetry", "topo", "deptho", "altitude", "bathy", "h", "rose"})
     if (name == known) return 1;
   return direction_of(variable.text("long_name")) ? 2 : 3;
 }
@@ -295,7 +295,8 @@ Result<chart::DepthGrid> read_netcdf(std::string_view bytes, const DepthOptions&
 Result<UtmZone> zone_of_prj(std::string_view wkt) {
   const std::string text = lower(wkt);
   const auto refused = [](const std::string& why) {
-    return fault("the .prj file " + why + "; read is UTM on WGS84, NAD83 or ETRS89 in metres: give --crs, or convert it");
+    return fault("the .prj file " + why +
+                 "; read is UTM on WGS84, NAD83 or ETRS89 in metres: give --crs, or convert it");
   };
   if (!has(text, "transverse_mercator")) return refused("names no UTM projection");
   if (!has(text, "wgs_1984") && !has(text, "wgs 84") && !has(text, "north_american_1983") && !has(text, "nad83") &&
@@ -323,7 +324,8 @@ Result<UtmZone> zone_of_prj(std::string_view wkt) {
 Result<Sign> sign_of(const Variable& variable) {
   std::vector<Sign> says;
   const std::string positive = lower(variable.text("positive"));
-  if (positive == "up" || positive == "down") says.push_back({positive == "up", "its attribute positive = " + positive});
+  if (positive == "up" || positive == "down")
+    says.push_back({positive == "up", "its attribute positive = " + positive});
   const auto add = [&](std::optional<bool> up, const std::string& why) {
     if (up) says.push_back({*up, why});
   };

@@ -64,7 +64,8 @@ struct Rimmed {
     for (const int dr : {-1, 0})
       for (const int dc : {-1, 0}) {
         const auto r = static_cast<std::ptrdiff_t>(row) + dr, c = static_cast<std::ptrdiff_t>(column) + dc;
-        if (r < 0 || c < 0 || r + 1 >= static_cast<std::ptrdiff_t>(rows) || c + 1 >= static_cast<std::ptrdiff_t>(columns))
+        if (r < 0 || c < 0 || r + 1 >= static_cast<std::ptrdiff_t>(rows) ||
+            c + 1 >= static_cast<std::ptrdiff_t>(columns))
           continue;
         const std::size_t k = static_cast<std::size_t>(r) * columns + static_cast<std::size_t>(c);
         const double y = 0.25 * (lats[k] + lats[k + 1] + lats[k + columns] + lats[k + columns + 1]);

@@ -43,10 +43,12 @@ double surface(const DepthGrid& g, double lat, double lon) {
   const double x = (lon - g.west_deg) / g.lon_step_deg, y = (lat - g.south_deg) / g.lat_step_deg;
   if (x < 0 || y < 0 || x > static_cast<double>(g.columns - 1) || y > static_cast<double>(g.rows - 1))
     return Bathymetry::kUnknown;
-  const auto c = std::min(static_cast<std::size_t>(x), g.columns - 2), r = std::min(static_cast<std::size_t>(y), g.rows - 2);
+  const auto c = std::min(static_cast<std::size_t>(x), g.columns - 2),
+             r = std::min(static_cast<std::size_t>(y), g.rows - 2);
   const double fx = x - static_cast<double>(c), fy = y - static_cast<double>(r);
   const auto d = [&](std::size_t i, std::size_t j) { return static_cast<double>(g.depths_m[j * g.columns + i]); };
-  const double sum = (1 - fy) * ((1 - fx) * d(c, r) + fx * d(c + 1, r)) + fy * ((1 - fx) * d(c, r + 1) + fx * d(c + 1, r + 1));
+  const double sum =
+      (1 - fy) * ((1 - fx) * d(c, r) + fx * d(c + 1, r)) + fy * ((1 - fx) * d(c, r + 1) + fx * d(c + 1, r + 1));
   return std::isnan(sum) ? Bathymetry::kUnknown : sum;
 }
 
@@ -199,12 +201,12 @@ TEST_CASE("a chart with bathymetry lets no segment into shallow or unknown water
     return chart.segment_is_clear(rad(40.2), rad(lon0), rad(40.2), rad(lon1), 2000);
   };
   CHECK(chart.least_depth() == Metres{40});
-  CHECK(clear(-0.55, 1.7));         // 45 m and deeper
-  CHECK_FALSE(clear(-0.55, -0.65)); // into 35 m
-  CHECK_FALSE(clear(1.7, 1.85));    // into the unknown
-  CHECK(clear(-0.8, -0.7));         // out of 20 m
+  CHECK(clear(-0.55, 1.7));          // 45 m and deeper
+  CHECK_FALSE(clear(-0.55, -0.65));  // into 35 m
+  CHECK_FALSE(clear(1.7, 1.85));     // into the unknown
+  CHECK(clear(-0.8, -0.7));          // out of 20 m
   CHECK_FALSE(clear(-0.7, -0.8));
-  CHECK_FALSE(clear(1.95, 1.9));    // from unknown to unknown
+  CHECK_FALSE(clear(1.95, 1.9));  // from unknown to unknown
   CHECK(clear(1.95, 1.7));
   CHECK(Chart{}.bathymetry() == nullptr);
 }

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdio>
+#include <fstream>
 #include <functional>
 #include <sstream>
 
@@ -367,4 +368,42 @@ TEST_CASE("real data: the land mask of Washington's coast agrees with our cut, l
     }
   CHECK(land > 100'000);
   CHECK(wrong == 0);
+}
+
+TEST_CASE("coast grows and simplifies a file that is there and says what it did") {
+  const test::ScratchFolder folder;
+  const std::int64_t degree = 10'000'000;
+  chart::CoastRing rock{{{4'000'000, 505'000'000}, {4'010'000, 505'000'000}, {4'000'000, 505'010'000}},
+                        {false, false, false}};
+  const auto coast = chart::Coast::make({5 * degree, 6 * degree, 50 * degree, 51 * degree}, "a test", {rock}).value();
+  std::ofstream{folder / "a.coast"} << coast->text();
+  static world::RealWorld real;
+  auto world = real.world();
+  const auto grow = [&](CoastOptions options) {
+    std::ostringstream out, err;
+    const int code = run_coast(options, world, out, err);
+    return Run{code, out.str(), err.str()};
+  };
+  CoastOptions options{"", folder / "b.coast", folder / "a.coast", 3000.0, {}};
+  const auto ran = grow(options);
+  CHECK(ran.err == "");
+  REQUIRE(ran.code == 0);
+  CHECK(ran.out.find("land grown by 3000 m and simplified outwards by at most 100 m") != std::string::npos);
+  const auto land = chart::Coast::parse(test::file_bytes(folder / "b.coast"));
+  REQUIRE(land);
+  const chart::Chart chart{chart::ChartSources{*land, {}, {}}};
+  const auto at = GeoPoint::from_degrees(50.5, 5.4).value();
+  for (int k = 0; k < 12; ++k) {  // the rock is 11 m wide
+    CHECK(chart.is_land(destination(at, Bearing{degrees(30 * k)}, Metres{2980})));
+    CHECK_FALSE(chart.is_land(destination(at, Bearing{degrees(30 * k)}, Metres{3125})));
+  }
+  options.area = "5/6/50/51";
+  CHECK(grow(options).code == 2);
+  options.area = options.from = "";
+  CHECK(grow(options).code == 2);
+  options.from = folder / "none.coast";
+  CHECK(grow(options).code == 1);
+  options.from = folder / "a.coast";
+  options.grow_m = -1;
+  CHECK(grow(options).err.find("0 to 50000 m") != std::string::npos);
 }

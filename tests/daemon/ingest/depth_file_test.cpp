@@ -37,7 +37,8 @@ std::string said(const Variable& v) {
   return sign ? (sign->up ? "up: " : "down: ") + sign->why : sign.error().what;
 }
 
-const std::string kSmall = "NCOLS 3\r\nnrows 2\r\nXLLCORNER 10\r\nyllcorner 50\r\ncellsize 0.5\r\nnodata_VALUE -9999\r\n";
+const std::string kSmall =
+    "NCOLS 3\r\nnrows 2\r\nXLLCORNER 10\r\nyllcorner 50\r\ncellsize 0.5\r\nnodata_VALUE -9999\r\n";
 
 }  // namespace
 
@@ -62,10 +63,8 @@ TEST_CASE("an ASCII grid is read with keys in any case and lines of any length")
 TEST_CASE("damage of an ASCII grid is named with its place") {
   CHECK(refusal(kSmall + "1 2 3 4 5") == "line 7, column 10: the file ends after 5 numbers, expected 6");
   CHECK(refusal(kSmall + "1 2 3\n4 5 6 7") == "line 8, column 7: more than the 6 numbers of the grid: '7'");
-  CHECK(refusal(kSmall + "1 2 3\n4 5,5 6") ==
-        "line 8, column 3: '5,5' has a decimal comma; numbers have a point");
-  CHECK(refusal(kSmall + "1 2 x3\n4 5 6") ==
-        "line 7, column 5: 'x3' is no number, expected is a depth or a height");
+  CHECK(refusal(kSmall + "1 2 3\n4 5,5 6") == "line 8, column 3: '5,5' has a decimal comma; numbers have a point");
+  CHECK(refusal(kSmall + "1 2 x3\n4 5 6") == "line 7, column 5: 'x3' is no number, expected is a depth or a height");
   CHECK(refusal("ncols 3\nncols 3\n") == "line 2, column 1: key 'ncols' stands here a second time");
   CHECK(refusal("ncols 3\nwidth 3\n").substr(0, 44) == "line 2, column 1: key 'width' is not known; ");
   CHECK(refusal("ncols 3 nrows 2 xllcorner 1 cellsize 1 1 2 3 4 5 6") ==
@@ -105,11 +104,13 @@ TEST_CASE("a prj file is read when it names UTM on a datum like WGS84 and refuse
   const auto zone = zone_of_prj("PROJCS[\"WGS_1984_UTM_Zone_31N\",PROJECTION[\"Transverse_Mercator\"]," + tail);
   REQUIRE(zone);
   CHECK(*zone == UtmZone{31, true});
-  CHECK(*zone_of_prj("PROJCS[\"NAD83 / UTM zone 5S\",PROJECTION[\"Transverse_Mercator\"]," + tail) == UtmZone{5, false});
-  for (const auto* bad : {"PROJCS[\"Lambert\",PROJECTION[\"Lambert_Conformal_Conic\"],UNIT[\"Meter\",1]]",
-                          "PROJCS[\"ED_1950_UTM_Zone_31N\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Meter\",1]]",
-                          "PROJCS[\"WGS_1984_TM\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Meter\",1]]",
-                          "PROJCS[\"WGS_1984_UTM_Zone_31N\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Foot\",0.3]]", ""})
+  CHECK(*zone_of_prj("PROJCS[\"NAD83 / UTM zone 5S\",PROJECTION[\"Transverse_Mercator\"]," + tail) ==
+        UtmZone{5, false});
+  for (const auto* bad :
+       {"PROJCS[\"Lambert\",PROJECTION[\"Lambert_Conformal_Conic\"],UNIT[\"Meter\",1]]",
+        "PROJCS[\"ED_1950_UTM_Zone_31N\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Meter\",1]]",
+        "PROJCS[\"WGS_1984_TM\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Meter\",1]]",
+        "PROJCS[\"WGS_1984_UTM_Zone_31N\",PROJECTION[\"Transverse_Mercator\"],UNIT[\"Foot\",0.3]]", ""})
     CHECK_FALSE(zone_of_prj(bad));
 }
 
@@ -167,7 +168,8 @@ TEST_CASE("depths of a bent mesh come out nowhere deeper than the point in whose
   for (int k = 0; k < 20000; ++k) {
     const double a = static_cast<double>(draw() % 10'000) / 1000, b = static_cast<double>(draw() % 13'000) / 1000;
     const double lat = 45 + 0.01 * (0.5 * a + 0.866 * b), lon = 8 + 0.01 * (0.866 * a - 0.5 * b);
-    const auto nearest = static_cast<std::size_t>(std::lround(b)) * mesh.columns + static_cast<std::size_t>(std::lround(a));
+    const auto nearest =
+        static_cast<std::size_t>(std::lround(b)) * mesh.columns + static_cast<std::size_t>(std::lround(a));
     const double there = std::isnan(mesh.depths[nearest]) ? chart::Bathymetry::kUnknown : mesh.depths[nearest];
     CHECK((*surface)->depth(lat * kPi / 180, lon * kPi / 180) <= there + 1e-4);  // float
   }

@@ -44,9 +44,10 @@ std::string row(const Order& order, const chart::DepthGrid& g) {
   for (const float depth : g.depths_m)
     if (!std::isnan(depth)) ++known, shoalest = std::min(shoalest, depth), deepest = std::max(deepest, depth);
   char text[600];
-  std::snprintf(text, sizeof text, "| %s | %s | %zu × %zu, %.4g′ × %.4g′ | %.4f° E, %.4f° N | %.6g to %.6g | %zu | %s |",
-                order.file, order.options, g.columns, g.rows, 60 * g.lon_step_deg, 60 * g.lat_step_deg, g.west_deg,
-                g.south_deg, static_cast<double>(shoalest), static_cast<double>(deepest), known, g.decided.c_str());
+  std::snprintf(text, sizeof text,
+                "| %s | %s | %zu × %zu, %.4g′ × %.4g′ | %.4f° E, %.4f° N | %.6g to %.6g | %zu | %s |", order.file,
+                order.options, g.columns, g.rows, 60 * g.lon_step_deg, 60 * g.lat_step_deg, g.west_deg, g.south_deg,
+                static_cast<double>(shoalest), static_cast<double>(deepest), known, g.decided.c_str());
   return text;
 }
 

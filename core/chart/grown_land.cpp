@@ -119,7 +119,8 @@ class Tracer {
       ways = static_cast<std::uint8_t>(ways & ~(1U << d));
       if (d != before) {
         ring.points.push_back({static_cast<std::int32_t>(cells_.x(c)), static_cast<std::int32_t>(cells_.y(r))});
-        const bool on_border = d == kEast || d == kWest ? r == 0 || r == cells_.rows() : c == 0 || c == cells_.columns();
+        const bool on_border =
+            d == kEast || d == kWest ? r == 0 || r == cells_.rows() : c == 0 || c == cells_.columns();
         ring.cut.push_back(on_border);
       }
       before = d;
@@ -155,8 +156,9 @@ Expected<std::shared_ptr<const Coast>, CoastError> grown_land(const Coast& coast
   const double columns =
       std::ceil(LocalMetric::at(widest).parallel_radius * static_cast<double>(area.width()) * kUnit / side);
   if (!(rows * columns <= kMostCells))
-    return refused("land simplified by " + whole(simplified_by.si()) +
-                   " needs too many cells for this area; allowed are about 2.7e8: simplify more, or cut a smaller area");
+    return refused(
+        "land simplified by " + whole(simplified_by.si()) +
+        " needs too many cells for this area; allowed are about 2.7e8: simplify more, or cut a smaller area");
   const Cells cells{coast, buffer.si(), static_cast<std::size_t>(columns), static_cast<std::size_t>(rows)};
   return Coast::make(area,
                      coast.source() + "; land grown by " + whole(buffer.si()) + " and simplified outwards by at most " +

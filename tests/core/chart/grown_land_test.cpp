@@ -32,12 +32,11 @@ bool is_land(const Coast& coast, const GeoPoint& p) { return coast.land().contai
 TEST_CASE("grown land holds the true buffer and nothing farther than the buffer and the bound") {
   std::mt19937_64 random{11};
   std::size_t near = 0, far = 0, between = 0;
-  for (const auto& [south, west, buffer, bound] :
-       std::vector<std::tuple<double, double, double, double>>{
+  for (const auto& [south, west, buffer, bound] : std::vector<std::tuple<double, double, double, double>>{
            {0.2, -20, 0, 700}, {35, 179.8, 1500, 400}, {-70, 10, 3000, 900}, {-0.3, 3, 500, 2500}}) {
     const auto area = area_of(west, west + 0.8, south, south + 0.5);
-    std::vector<LonLat> rings{star(west + 0.25, south + 0.25, 0.12, 40, random),
-                              star(west + 0.6, south + 0.15, 0.03, 9, random),
+    std::vector<LonLat> rings{star(west + 0.25, south + 0.25, 0.2 * std::cos(south * kPi / 180), 40, random),
+                              star(west + 0.6, south + 0.15, 0.1 * std::cos(south * kPi / 180), 9, random),
                               box_of(west + 0.65, west + 0.6502, south + 0.4, south + 0.4002)};  // a rock of 20 m
     const auto coast = coast_of(area, rings);
     const auto grown = grown_land(*coast, Metres{buffer}, Metres{bound});

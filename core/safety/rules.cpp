@@ -306,7 +306,7 @@ Margin judge_values(const Evidence& e) {
   return plain(finite, finite ? "every current met is a number" : "the forecast gave a current that is not a number");
 }
 
-constexpr std::array<Rule, 23> kRules{{{"0 dossier", judge_dossier},
+constexpr std::array<Rule, 24> kRules{{{"0 dossier", judge_dossier},
                                        {"4 name", judge_name},
                                        {"4 size", judge_size},
                                        {"4 format", judge_format},

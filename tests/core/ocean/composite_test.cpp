@@ -184,7 +184,7 @@ TEST_CASE("a lead time ends the use of a source before its data end") {
   CHECK(field.coverage().last_s == 96 * kHour);
 }
 
-TEST_CASE("a region ends the use of a source; an area across the antimeridian is one, too") {
+TEST_CASE("a region ends the use of a source, and an area across the antimeridian is one, too") {
   auto sources = nested(kEastward, kWestward).sources();
   sources[0].region =
       SourceRegion{{geo_point(39.3, 4.3), geo_point(39.3, 5.7), geo_point(40.7, 5.7), geo_point(40.7, 4.3)}};
@@ -204,7 +204,7 @@ TEST_CASE("a region ends the use of a source; an area across the antimeridian is
   CHECK_FALSE(in(10.1, 180));
 }
 
-TEST_CASE("a source without a value hands over; without any the reason is that of the most trusted one there") {
+TEST_CASE("a source without a value hands over, and without any the reason is that of the most trusted one there") {
   std::vector<CompositeSource> sources;
   const auto axes = test::flat_axes(test::steps(39, 0.1, 21), test::steps(4, 0.1, 21));
   const auto dry_north = [](double from) {

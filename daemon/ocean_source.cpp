@@ -176,7 +176,7 @@ OceanResult assemble(const OceanOrder& order, std::vector<Read> reads, world::Fi
       ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
   auto forecast = sources.empty() ? ocean::Forecast::prepare(*formulas)
                                   : ocean::Forecast::prepare(sources, seams, profile, *formulas,
-                                                            turning_depth(*bottom, m.depth_margin));
+                                                             turning_depth(*bottom, m.depth_margin));
   if (!forecast) return unexpected(forecast.error().message());
 
   OceanSource ocean{std::move(forecast).value(), {}, {}, m.currents.analytic, order.start, box, {}, {}};

@@ -165,8 +165,7 @@ Expected<Forecast, ForecastError> Forecast::prepare(const GridView& grid, const 
 }
 
 Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<ForecastSource>& sources, const Seams& seams,
-                                                    const DiveProfile& profile,
-                                                    const std::vector<AnalyticField>& added,
+                                                    const DiveProfile& profile, const std::vector<AnalyticField>& added,
                                                     const TurningDepth& turning) {
   if (sources.empty()) return unexpected(ForecastError{"no source was given"});
   const auto& only = sources.front();

@@ -94,7 +94,7 @@ double HeldFlight::toll(double lat0, double lon0, double lat1, double lon1, bool
     const double spare = chart_.clearance(lat0 + share * (lat1 - lat0), lon0 + share * (lon1 - lon0)) - asked;
     if (strict && spare < -buffer_) return -1;
     if (spare < 0 && buffer_ > 0) paid += 0.5 * (spare / buffer_) * (spare / buffer_) * apart;
-    i += spare > apart ? static_cast<int>(std::min(spare / apart, 1e6)) : 1;
+    i += apart > 0 && spare > apart ? static_cast<int>(std::min(spare / apart, 1e6)) : 1;
   }
   return paid;
 }

@@ -95,7 +95,7 @@ void Front::move_batch(ocean::FieldRef field, double speed, double t_s, double d
         m.turn = turn_between(before, m) / dt;
       }
     }
-    settle(m, before, field, speed, t_s, dt, lanes.lost[k] != 0);
+    settle(m, before, field, speed, t_s, dt, lanes.lost[k]);
   }
 }
 
@@ -105,17 +105,19 @@ bool Front::clear_way(const Marker& from, double lat, double lon) const {
   return chart_.segment_is_clear(from.lat, from.lon, lat, lon, clearance_);
 }
 
-/// After a step: the marker is where it came to, or at the wall on its way there.
+/// After a step: the marker is where it came to, or at the wall on its way there. `lost`: 0, or the NoCurrent it ran into.
 void Front::settle(Marker& m, const Marker& before, ocean::FieldRef field, double speed, double t_s, double dt,
-                   bool lost) {
-  if (!lost && clear_way(before, m.lat, m.lon)) {
+                   std::uint8_t lost) {
+  if (lost == 0 && clear_way(before, m.lat, m.lon)) {
     m.stuck = false;
     m.left = 0;
     return;
   }
-  met_land_ = met_land_ || !lost;
+  const auto is = [lost](ocean::NoCurrent reason) { return lost == static_cast<std::uint8_t>(reason); };
+  met_land_ = met_land_ || lost == 0;
+  met_dry_ = met_dry_ || (lost != 0 && !is(ocean::NoCurrent::outside_area) && !is(ocean::NoCurrent::outside_time));
   double dlat = m.lat - before.lat, dlon = m.lon - before.lon;
-  if (lost) {  // it was not moved: straight on through the water
+  if (lost != 0) {  // it was not moved: straight on through the water
     const auto metric = LocalMetric::at(before.lat);
     const double way = speed * dt;
     dlat = way * before.north / metric.meridian_radius;

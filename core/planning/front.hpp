@@ -23,8 +23,8 @@ namespace glidehelm::planning {
 /// carries a second place, `kBeside` along the front: the line between the two ends gives the new normal, (Dφ)⁻ᵀn, so no
 /// gradient of the field is asked for. Second order in the step. Drifting is the same with U = 0. Nothing depends on |c| < U.
 ///
-/// Every marker is where the vehicle can be, so none is ever too early; the earliest arrival is not missed as long as the
-/// polygon covers the boundary. Hence three rules:
+/// Every marker is where the vehicle can be (one that is stuck at a wall may stay longer than a current would let it: early, never
+/// late); the earliest arrival is not missed as long as the polygon covers the boundary. Hence three rules:
 /// - `refine`: edges longer than `spacing`, or that turn much, get markers on the cubic that has the ends' normals
 ///   (fourth order in the spacing).
 /// - `prune`: swallowtails grow without limit and are cut. A place about which the polygon winds is reached (the degree of
@@ -54,11 +54,14 @@ class Front {
   [[nodiscard]] const std::vector<Marker>& markers() const { return markers_; }
   [[nodiscard]] bool complete() const { return complete_; }
   [[nodiscard]] bool met_land() const { return met_land_; }  ///< or the border of an area: a wall of the chart
+  /// A wall that the field itself has: its mask, or water without data. Its border (a convex box) and its end in time are none.
+  [[nodiscard]] bool met_dry() const { return met_dry_; }
   [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
 
  private:
   void move_batch(ocean::FieldRef field, double speed, double t_s, double dt, std::size_t first, std::size_t last);
-  void settle(Marker& m, const Marker& before, ocean::FieldRef field, double speed, double t_s, double dt, bool lost);
+  void settle(Marker& m, const Marker& before, ocean::FieldRef field, double speed, double t_s, double dt,
+              std::uint8_t lost);
   bool blocked(std::int64_t row, std::int64_t column, double t_s);
   bool fan_out();
   [[nodiscard]] std::int64_t wall_cell(const Marker& m) const;
@@ -76,7 +79,7 @@ class Front {
   std::vector<std::size_t> moving_;
   std::unordered_set<std::int64_t> walls_, creeps_;  ///< cells that have sent; only asked, never walked through
   double room_{};  ///< metres that nothing can have come nearer than to the goal's disc
-  bool met_land_{};
+  bool met_land_{}, met_dry_{};
   std::size_t after_prune_{};
   bool complete_{true};
   std::size_t evaluations_{};

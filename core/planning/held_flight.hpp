@@ -35,8 +35,8 @@ class HeldFlight {
   void fly(HeldLanes& lanes, int k, const std::array<double, ocean::Lanes::kMax>& headings, double until_s,
            bool strict);
 
+  /// How far beyond the margin toll is paid; 0 (the default): nowhere.
   void set_buffer(Metres buffer) { buffer_ = buffer.si(); }
-  void set_margin(Metres margin) { margin_ = margin.si(); }
   /// Distance to the goal's centre.
   [[nodiscard]] double to_goal(double lat, double lon) const { return vehicle::distance_near(lat, lon, goal_); }
   /// Epoch second of the dive of stint `k`.

@@ -36,6 +36,8 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& problem, Members members
     offer(std::move(answer).value());
   }
   if (!best) return unexpected(*failure);
+  // A straight way that does not arrive where the search does has nothing to give.
+  if (best->reaches_goal() && found.size() > 1 && !found.front().reaches_goal()) found.erase(found.begin());
   if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse));
   best->statistics = purse.spent();
   best->cut_at = purse.cut_at();

@@ -53,6 +53,7 @@ class Run {
   [[nodiscard]] double arrival() const { return now_; }
   [[nodiscard]] std::uint64_t steps() const { return front_.evaluations() / 8; }
   [[nodiscard]] bool met_land() const { return front_.met_land(); }
+  [[nodiscard]] bool met_dry() const { return front_.met_dry(); }
   [[nodiscard]] std::size_t evaluations() const { return front_.evaluations(); }
   [[nodiscard]] std::vector<Isochrone> isochrones() { return std::move(isochrones_); }
 
@@ -145,15 +146,20 @@ class Certificate {
     if (!coarse) return cut();
     const double other = std::isnan(*coarse) ? until : *coarse;
     const double error = std::abs(other - *fine) + kLeastError * *fine;
-    if (!met_land_) {
+    if (!met_land_ && !met_dry_) {
       certify(*fine, error);
       return std::move(bound_);
     }
-    // Does the coast matter? Without it the front has no corners to go round, and what it says is a bound in any case.
-    const auto open = run(0, 1, until, 0, true);
-    if (!open) return cut();
-    const double detour = std::isnan(*open) ? 0.0 : std::max(0.0, *fine - *open);
-    certify(*fine, error + std::min(late_at_corners(), detour));
+    double late = late_at_corners();
+    if (!met_dry_) {
+      // Does the coast matter? Without it the front has no corners to go round, and what it says is a bound in any case. Walls
+      // of the field itself cannot be taken away.
+      const auto open = run(0, 1, until, 0, true);
+      if (!open) return cut();
+      const double detour = std::isnan(*open) ? 0.0 : std::max(0.0, *fine - *open);
+      if (!met_dry_) late = std::min(late, detour);
+    }
+    certify(*fine, error + late);
     return std::move(bound_);
   }
 
@@ -164,10 +170,10 @@ class Certificate {
     bound_.travel_s = arrival - bound_.error_s;
   }
   Bound prove_unreachable() {
-    const auto raised = run(kSpeedBar, 1, horizon_ + (met_land_ ? late_at_corners() : 0.0), 0);
+    const double late = met_land_ || met_dry_ ? late_at_corners() : 0.0;
+    const auto raised = run(kSpeedBar, 1, horizon_ + late, 0);
     if (!raised) return cut();
     if (!std::isnan(*raised)) {  // within the bar of the horizon: the faster vehicle's arrival is a bound
-      const double late = met_land_ ? late_at_corners() : 0.0;
       certify(horizon_, std::max(0.0, horizon_ - *raised) + late + kLeastError * horizon_);
       return std::move(bound_);
     }
@@ -207,6 +213,7 @@ class Certificate {
     bound_.statistics.expansions += one.steps();
     bound_.statistics.current_evaluations += one.evaluations();
     met_land_ = met_land_ || one.met_land();
+    met_dry_ = met_dry_ || one.met_dry();
     if (isochrones > 0) bound_.isochrones = one.isochrones();
     if (end == Run::End::cut) return std::nullopt;
     return end == Run::End::reached ? one.arrival() : std::nan("");
@@ -218,7 +225,7 @@ class Certificate {
   const Budget& budget_;
   const BoundSettings& settings_;
   double spacing_, step_, horizon_;
-  bool met_land_{};
+  bool met_land_{}, met_dry_{};
   Bound bound_;
 };
 

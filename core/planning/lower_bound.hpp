@@ -44,7 +44,10 @@ inline constexpr double kSpeedBar = 0.005;
 ///
 /// Computed twice, the second time with twice the step and spacing. The method is of second order, so the finer result is
 /// about a third of the difference away from the truth; the whole difference and `kLeastError` of the time are the error
-/// bar, and `travel_s` has it subtracted. Where the goal stays unreached the front is moved again with the speed raised by
+/// bar, and `travel_s` has it subtracted. Behind corners of walls the front is late by a few spacings: where it met land or the
+/// border of an area, the time of six spacings is subtracted as well, but no more than the detour that the chart costs (a third
+/// run, without it, tells); where it met the field's own land or water without data, all of it. A passage narrower than a
+/// spacing may be lost: the bound, and `unreachable`, are then those of the way round it. Where the goal stays unreached the front is moved again with the speed raised by
 /// `kSpeedBar`, and only when that does not reach it either it is `unreachable`.
 ///
 /// `budget.work` counts steps of markers over all runs; with `expired` the answer is `cut`. The failures are those of

@@ -73,8 +73,6 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
   };
   for (const auto& plan : plans) {
     if (purse.is_empty()) break;
-    if (given.reaches_goal() && !plan.reaches_goal() && plan.method != given.method && plan.method == "direct")
-      continue;
     // Without an arrival the flight ends with the last heading. A second: times are rounded.
     const double until_s =
         plan.reaches_goal() || plan.stints.empty() ? problem.horizon_s : plan.stints.back().surface_s + 1.0;

@@ -244,12 +244,20 @@ Margin judge_tail(const Evidence& e) {
           worst_of(keeps_margin(track, dive, arrival, 0.0, Distance::clearance, e.chart),
                    keeps_margin(track, std::max(dive, arrival), track.size(), 0.0, Distance::coast, e.chart));
       const bool aground = flight.end == FlightEnd::land && !(flight.arrival_s && e.chart.has_coast());
+      const auto* bottom = e.chart.bathymetry();
+      const Kept water = bottom == nullptr ? Kept{true, chart::Chart::kHorizon, dive}
+                                           : keeps_depth(track, dive, track.size(), 0.0, *bottom);
+      const bool dry = !water.holds || !(water.found > 0);
       if (kept.found < m.found) m.found = kept.found;
-      if (m.holds && (!kept.holds || aground)) {
+      if (m.holds && (!kept.holds || aground || dry)) {
         m.holds = false;
-        const auto& where = aground ? track.back() : track[kept.where];
-        m.message = sentence("touches land or a forbidden area with stint length %+.0f %% and speed %+.0f %%: %s",
-                             100 * (length - 1), 100 * (speed - 1), place(where, e.dossier).c_str());
+        const bool touches = !kept.holds || aground;
+        const auto& where =
+            aground ? track.back() : track[touches ? kept.where : std::min(water.where, track.size() - 1)];
+        m.message = sentence(
+            "%s with stint length %+.0f %% and speed %+.0f %%: %s",
+            touches ? "touches land or a forbidden area" : "comes where the depth is not known or there is no water",
+            100 * (length - 1), 100 * (speed - 1), place(where, e.dossier).c_str());
       }
     }
   }

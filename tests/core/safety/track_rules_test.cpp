@@ -323,6 +323,15 @@ TEST_CASE("rule 2 depth: unknown water and land refuse") {
   CHECK_FALSE(margin(over(500, 0.4, 0.6, -3).judged(), "2 depth").holds);
 }
 
+TEST_CASE("rule 2 tail: with a bathymetry the water must be known there too, but may be shallow") {
+  CHECK(margin(over(500, 0.4, 0.6, 39).judged(), "2 tail").holds);
+  const auto unknown = margin(over(500, 0.4, 0.6, kUnknownDepth).judged(), "2 tail");
+  CHECK_FALSE(unknown.holds);
+  CHECK(unknown.message.find("the depth is not known or there is no water with stint length -5 %") !=
+        std::string::npos);
+  CHECK_FALSE(margin(over(500, 0.4, 0.6, -3).judged(), "2 tail").holds);
+}
+
 TEST_CASE("rule 2 depth: a start in shallow water may leave it, not come into shallower water") {
   CHECK(over(500, -0.2, 0.2, 30).failing() == "");
   auto c = over(30, 0.1, 0.2, 20);

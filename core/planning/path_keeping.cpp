@@ -11,35 +11,70 @@ namespace glidehelm::planning {
 namespace {
 
 constexpr double kOnPath = 20.0;        // metres
+constexpr double kOffPath = 500.0;      // metres
 constexpr double kMostTurn = kPi / 12;  // 15°
 constexpr int kCorrections = 3;
 
 /// The path that headings mean when they are held, and the helm that keeps to it.
 class PathKeeper {
  public:
-  PathKeeper(std::span<const Heading> headings, const Problem& problem, const vehicle::Waters& waters)
-      : headings_{headings}, problem_{problem}, waters_{waters}, goal_{disc_of(problem)} {
-    auto at = vehicle::state_at(problem.start.fix, problem.start.fix_s, waters);
-    for (std::size_t k = 0; k < headings.size(); ++k) {
-      const int n = static_cast<int>(k);
-      const auto dive =
-          vehicle::move(waters, waters.ocean.surface, at, problem.schedule.drift_before(n).count(), {}, nullptr);
-      if (dive.lost) break;
-      const auto stint = hold(dive.end, n, headings[k]);
-      if (stint.lost || stint.arrival_s) break;
-      surfacings_.push_back(stint.end);
-      at = stint.end;
-    }
+  PathKeeper(std::span<const Heading> headings, const Problem& problem, const vehicle::Waters& waters,
+             const Replan& replan)
+      : headings_{headings.begin(), headings.end()},
+        problem_{problem},
+        waters_{waters},
+        goal_{disc_of(problem)},
+        replan_{replan} {
+    const auto fix = vehicle::state_at(problem.start.fix, problem.start.fix_s, waters);
+    lay_out(drift(fix, 0), 0);
   }
 
-  [[nodiscard]] std::optional<Heading> heading(int k, GeoPoint dive, double dive_s) const {
+  /// The law asks more than once for a stint: the same question has the same answer.
+  [[nodiscard]] std::optional<Heading> heading(int k, GeoPoint dive, double dive_s) {
+    if (asked_ && asked_->k == k && asked_->dive == dive && asked_->dive_s == dive_s) return asked_->answer;
     const auto n = static_cast<std::size_t>(k);
-    if (n >= headings_.size()) return std::nullopt;
     const auto from = vehicle::state_at(dive, dive_s, waters_);
-    return n < surfacings_.size() ? towards_surfacing(k, from) : towards_goal(k, from);
+    if (replan_ && k > 0 && (n >= headings_.size() || off_path(n, from))) {
+      const auto begin = std::min(n, headings_.size());
+      const auto rest = replan_(k, dive, dive_s, std::span{headings_}.subspan(begin));
+      headings_.resize(begin);
+      headings_.insert(headings_.end(), rest.begin(), rest.end());
+      lay_out(from, n);
+    }
+    std::optional<Heading> answer;
+    if (n < headings_.size()) answer = n < surfacings_.size() ? towards_surfacing(k, from) : towards_goal(k, from);
+    asked_ = Asked{k, dive, dive_s, answer};
+    return answer;
   }
 
  private:
+  struct Asked {
+    int k;
+    GeoPoint dive;
+    double dive_s;
+    std::optional<Heading> answer;
+  };
+  [[nodiscard]] vehicle::State drift(const vehicle::State& from, int k) const {
+    return vehicle::move(waters_, waters_.ocean.surface, from, problem_.schedule.drift_before(k).count(), {}, nullptr)
+        .end;
+  }
+  /// Where the headings from stint `n` on lead when they are held from a dive, as far as they do without an arrival.
+  void lay_out(vehicle::State dive, std::size_t n) {
+    dives_.resize(n);
+    surfacings_.resize(std::min(n, surfacings_.size()));
+    for (; n < headings_.size(); ++n) {
+      dives_.push_back(dive);
+      const int k = static_cast<int>(n);
+      const auto stint = hold(dive, k, headings_[n]);
+      if (stint.lost || stint.arrival_s) break;
+      surfacings_.push_back(stint.end);
+      dive = drift(stint.end, k + 1);
+    }
+  }
+  [[nodiscard]] bool off_path(std::size_t n, const vehicle::State& from) const {
+    if (n >= dives_.size()) return true;
+    return local_offset(from.lat, from.lon, dives_[n].lat, dives_[n].lon).length() > kOffPath;
+  }
   [[nodiscard]] vehicle::Motion hold(const vehicle::State& from, int k, Heading heading) const {
     return vehicle::move(waters_, waters_.ocean.dive, from, problem_.schedule.stint_length(k).count(),
                          vehicle::WaterVelocity::of(heading, problem_.glider.horizontal_speed), &goal_);
@@ -101,21 +136,23 @@ class PathKeeper {
 
   static constexpr double kSmallTurn = 1e-4;  // radians: a metre beside a stint's end
 
-  std::span<const Heading> headings_;
+  std::vector<Heading> headings_;
   const Problem& problem_;
   const vehicle::Waters& waters_;
   vehicle::Disc goal_;
-  std::vector<vehicle::State> surfacings_;  ///< of the held headings, as far as they lead without an arrival
+  const Replan& replan_;
+  std::vector<vehicle::State> dives_, surfacings_;  ///< of the held headings, as far as they lead without an arrival
+  std::optional<Asked> asked_;
 };
 
 }  // namespace
 
 vehicle::FlownList fly_path(std::span<const Heading> headings, const Problem& problem, const ocean::Ocean& ocean,
-                            const chart::Chart& chart, double until_s) {
+                            const chart::Chart& chart, double until_s, const Replan& replan) {
   const auto waters = waters_of(problem, ocean, chart);
   auto flight = flight_of(problem);
   flight.horizon_s = std::min(flight.horizon_s, until_s);
-  const PathKeeper keeper{headings, problem, waters};
+  PathKeeper keeper{headings, problem, waters, replan};
   return vehicle::fly_helm([&](int k, GeoPoint dive, double dive_s) { return keeper.heading(k, dive, dive_s); }, flight,
                            waters);
 }

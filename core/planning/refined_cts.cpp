@@ -23,23 +23,45 @@ struct Variant {
 };
 constexpr std::array<Variant, 2> kVariants{{{2.0, 2.0}, {3.0, 1.0}}};
 
-/// Refinement under one purse and one chart.
+/// The problem with a smaller disc to arrive in.
+Problem with_radius(const Problem& problem, double share) {
+  Problem inner = problem;
+  auto& goal = std::get<PointGoal>(inner.goal);
+  goal.radius = share * goal.radius;
+  return inner;
+}
+
+/// Headings, and one more stint towards the goal, for a flight that is late.
+std::vector<Heading> with_one_more(std::span<const Heading> headings, GeoPoint from, const Problem& problem) {
+  std::vector<Heading> longer{headings.begin(), headings.end()};
+  longer.emplace_back(geodesic(from, disc_of(problem).centre).departing.from_north());
+  return longer;
+}
+
+/// Refinement and flights under one purse and one chart.
 class Polish {
  public:
   Polish(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse)
       : problem_{problem}, ocean_{ocean}, chart_{chart}, purse_{purse} {}
 
-  /// The allowance that a searched plan has beside the margin, or as much of it as the way itself keeps.
-  [[nodiscard]] Refined polish(const std::vector<Heading>& headings) {
-    for (const double share : {1.0, 0.5, 0.0}) {
-      if (purse_.is_empty() || headings.empty()) break;
-      auto tried = refine(headings, problem_, ocean_, chart_, problem_.coast_margin + share * allowance(problem_),
-                          purse_.rest());
-      purse_.take(tried.statistics, tried.cut);
-      if (tried.kept_margin) return tried;
+  [[nodiscard]] Refined polish(const std::vector<Heading>& headings) { return polish(headings, problem_); }
+
+  /// The polished way as the lists that will be emitted. The shortest way may only graze the goal's disc, and a flight that is a
+  /// little late or beside it is carried past where the current is strong: then ways to a smaller disc are flown.
+  [[nodiscard]] vehicle::FlownList fly(const Refined& way, double until_s) {
+    if (std::isnan(way.arrival_s)) return fly_path(way.headings, problem_, ocean_, chart_, until_s);
+    auto flown = fly(way.headings, until_s, problem_);
+    for (const double share : {0.9, 0.5}) {
+      if (flown.arrival_s || purse_.is_empty()) break;
+      const auto inner = with_radius(problem_, share);
+      const auto way_in = polish(with_one_more(way.headings, problem_.start.fix, problem_), inner);
+      if (way_in.headings.empty() || std::isnan(way_in.arrival_s)) continue;
+      auto again = fly(way_in.headings, until_s, inner);
+      if (again.arrival_s) flown = std::move(again);
     }
-    return {};
+    return flown;
   }
+
   [[nodiscard]] CtsSearch search_variant(const Variant& variant) {
     Problem other = problem_;
     other.headings = static_cast<int>(std::lround(variant.headings * problem_.headings));
@@ -50,6 +72,36 @@ class Polish {
   }
 
  private:
+  /// With the allowance that a searched plan has beside the margin, or as much of it as the way itself keeps.
+  [[nodiscard]] Refined polish(const std::vector<Heading>& headings, const Problem& problem) {
+    for (const double share : {1.0, 0.5, 0.0}) {
+      if (purse_.is_empty() || headings.empty()) break;
+      auto tried =
+          refine(headings, problem, ocean_, chart_, problem.coast_margin + share * allowance(problem), purse_.rest());
+      purse_.take(tried.statistics, tried.cut);
+      if (tried.kept_margin) return tried;
+    }
+    return {};
+  }
+  /// `aim`: the problem that headings are made anew for.
+  [[nodiscard]] vehicle::FlownList fly(const std::vector<Heading>& headings, double until_s, const Problem& aim) {
+    return fly_path(headings, problem_, ocean_, chart_, until_s,
+                    [&](int k, GeoPoint dive, double dive_s, std::span<const Heading> rest) {
+                      return polish_rest(k, dive, dive_s, rest, aim);
+                    });
+  }
+  /// The rest of a way, from a dive. What does not arrive is left as it was.
+  [[nodiscard]] std::vector<Heading> polish_rest(int k, GeoPoint dive, double dive_s, std::span<const Heading> rest,
+                                                 const Problem& problem) {
+    Problem left = problem;
+    left.start = {dive, dive_s};
+    left.schedule.time_to_dive = Seconds{0};
+    left.schedule.first_stint = problem.schedule.stint_length(k);
+    auto polished = polish(with_one_more(rest, dive, problem), left);
+    if (polished.headings.empty() || std::isnan(polished.arrival_s)) return {rest.begin(), rest.end()};
+    return std::move(polished.headings);
+  }
+
   const Problem& problem_;
   const ocean::Ocean& ocean_;
   const chart::Chart& chart_;
@@ -64,11 +116,11 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
   Plan best = plans.front();
   for (const auto& plan : plans.subspan(1))
     if (better_than(plan, best)) best = plan;
-  const Plan given = best;
+  const auto reason = best.reason;
   const auto offer = [&](const Refined& way, const std::string& method, double until_s) {
     if (way.headings.empty()) return;
-    auto flown = plan_from(method, fly_path(way.headings, problem, ocean, chart, until_s), problem, {});
-    if (!flown.reaches_goal()) flown.reason = given.reason;
+    auto flown = plan_from(method, polish.fly(way, until_s), problem, {});
+    if (!flown.reaches_goal()) flown.reason = reason;
     if (better_than(flown, best)) best = std::move(flown);
   };
   for (const auto& plan : plans) {
@@ -79,7 +131,7 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
     offer(polish.polish(headings_of(plan, problem, ocean, chart)), plan.method + "-refined", until_s);
   }
   for (const auto& variant : kVariants) {
-    if (!best.reaches_goal() || purse.is_empty()) break;
+    if (purse.is_empty()) break;
     const auto found = polish.search_variant(variant);
     if (!std::isnan(found.arrival_s)) offer(polish.polish(found.headings), "cts-astar-refined", problem.horizon_s);
   }

@@ -23,6 +23,13 @@ struct Variant {
 };
 constexpr std::array<Variant, 2> kVariants{{{2.0, 2.0}, {3.0, 1.0}}};
 
+constexpr double kOnTime =
+    5e-4;  // of the travel time: a flight that is later than its way by more is polished as it goes
+
+void keep_earlier(vehicle::FlownList& flown, vehicle::FlownList other) {
+  if (other.arrival_s && (!flown.arrival_s || *other.arrival_s < *flown.arrival_s)) flown = std::move(other);
+}
+
 /// The problem with a smaller disc to arrive in.
 Problem with_radius(const Problem& problem, double share) {
   Problem inner = problem;
@@ -49,15 +56,17 @@ class Polish {
   /// The polished way as the lists that will be emitted. The shortest way may only graze the goal's disc, and a flight that is a
   /// little late or beside it is carried past where the current is strong: then ways to a smaller disc are flown.
   [[nodiscard]] vehicle::FlownList fly(const Refined& way, double until_s) {
-    if (std::isnan(way.arrival_s)) return fly_path(way.headings, problem_, ocean_, chart_, until_s);
-    auto flown = fly(way.headings, until_s, problem_);
+    auto flown = fly_path(way.headings, problem_, ocean_, chart_, until_s);
+    if (std::isnan(way.arrival_s)) return flown;
+    const double on_time = way.arrival_s + kOnTime * (way.arrival_s - problem_.start.fix_s);
+    if (flown.arrival_s && *flown.arrival_s <= on_time) return flown;
+    keep_earlier(flown, fly(way.headings, until_s, problem_));
     for (const double share : {0.9, 0.5}) {
       if (flown.arrival_s || purse_.is_empty()) break;
       const auto inner = with_radius(problem_, share);
       const auto way_in = polish(with_one_more(way.headings, problem_.start.fix, problem_), inner);
       if (way_in.headings.empty() || std::isnan(way_in.arrival_s)) continue;
-      auto again = fly(way_in.headings, until_s, inner);
-      if (again.arrival_s) flown = std::move(again);
+      keep_earlier(flown, fly(way_in.headings, until_s, inner));
     }
     return flown;
   }

@@ -7,6 +7,7 @@
 
 #include "config/areas.hpp"
 #include "config/currents.hpp"
+#include "config/flight_model.hpp"
 #include "config/yaml_reader/schema.hpp"
 
 namespace glidehelm::config {
@@ -22,6 +23,8 @@ constexpr double kShortestStint_h = 0.1, kLongestStint_h = 72.0;
 /// A mission as its file says it, before what depends on several keys is worked out.
 struct Draft : Mission {
   std::optional<double> goal_lat, goal_lon, start_lat, start_lon;  ///< degrees
+  std::optional<MetresPerSecond> speed_given;
+  std::optional<Radians> glide_angle_given;
   std::optional<Seconds> stint_given, first_stint_given;
   std::vector<CurrentsItem> fields;
   AreasDraft inside, outside;
@@ -67,9 +70,25 @@ Fields<Draft> start_fields() {
 
 Fields<Draft> vehicle_fields() {
   Fields<Draft> f;
-  f.number({"horizontal_speed_m_per_s", "speed through water, horizontal part: U·cos(glide angle)"},
-           &Draft::horizontal_speed, 1, above(0, 2));
-  f.number({"glide_angle_deg", "angle of the path below the horizon"}, &Draft::glide_angle, kDegree, from_to(5, 60));
+  f.maybe_number({"horizontal_speed_m_per_s",
+                  "speed through water, horizontal part: U·cos(glide angle); not together with `force_balance`", false,
+                  "0.3, or what `force_balance` gives"},
+                 &Draft::speed_given, 1, above(0, 2));
+  f.maybe_number({"glide_angle_deg", "angle of the path below the horizon; not together with `force_balance`", false,
+                  "26, or what `force_balance` gives"},
+                 &Draft::glide_angle_given, kDegree, from_to(5, 60));
+  f.word({"motion",
+          "what carries a plan: `point`, the mean current over the dive; `yo-yo`, the current at the depth at each "
+          "instant "
+          "(slower)"},
+         &Draft::motion,
+         std::vector<std::pair<std::string, vehicle::MotionModel>>{{"point", vehicle::MotionModel::point},
+                                                                   {"yo-yo", vehicle::MotionModel::yo_yo}});
+  f.custom(
+      {"force_balance", "the glider as a body: its speed and glide angle follow from hull, pump, pitch and water",
+       false, "none"},
+      flight_model_fields().shape(), "", [](const At& at, Draft& d) { read_flight_model(at, d.flight_model); },
+      [](const Draft& d, const std::string& path, Effective& out) { print_flight_model(d.flight_model, path, out); });
   f.number({"dive_depth_m", "lower turning depth of the yo"}, &Draft::dive_depth, 1, above(0, 1500));
   f.number({"climb_to_m", "upper turning depth of the yo; less than `dive_depth_m`"}, &Draft::climb_to, 1,
            from_to(0, 1500));
@@ -238,6 +257,27 @@ void check_vehicle(const Draft& d, Reading& reading) {
   if (d.climb_to >= d.dive_depth)
     reading.complain("vehicle.climb_to_m", "not above the dive depth", yaml_number(d.climb_to.si()),
                      "less than dive_depth_m (" + yaml_number(d.dive_depth.si()) + " m)");
+  if (!d.flight_model) return;
+  for (const auto& [key, given] : {std::pair{"horizontal_speed_m_per_s", d.speed_given.has_value()},
+                                   std::pair{"glide_angle_deg", d.glide_angle_given.has_value()}})
+    if (given)
+      reading.complain(std::string{"vehicle."} + key, "both " + std::string{key} + " and force_balance", {},
+                       "one of the two");
+}
+
+/// Speed and glide angle: as they are given, or the means of the body over the yo.
+void resolve_speed(Draft& d, Reading& reading) {
+  d.horizontal_speed = d.speed_given.value_or(Mission{}.horizontal_speed);
+  d.glide_angle = d.glide_angle_given.value_or(Mission{}.glide_angle);
+  if (!d.flight_model || d.climb_to >= d.dive_depth) {
+    if (!d.flight_model) d.speed_given = d.horizontal_speed, d.glide_angle_given = d.glide_angle;
+    return;
+  }
+  const auto means =
+      yo_means(d.flight_model->hull, d.flight_model->trim, d.flight_model->column(), d.climb_to, d.dive_depth);
+  if (!means) return reading.complain("vehicle.force_balance", means.error());
+  d.horizontal_speed = means->horizontal;
+  d.glide_angle = means->glide_angle;
 }
 
 void check_schedule(const Draft& d, Reading& reading) {
@@ -308,6 +348,7 @@ Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_vi
       fields().read(root, draft);
       check_positions(draft, reading);
       check_vehicle(draft, reading);
+      resolve_speed(draft, reading);
       check_schedule(draft, reading);
       check_planning(draft, reading);
       check_safety(draft, reading);

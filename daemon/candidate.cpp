@@ -8,6 +8,7 @@
 #include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
 #include "core/vehicle/steering.hpp"
+#include "core/vehicle/yo_field.hpp"
 #include "protocol/goto_list.hpp"
 
 namespace glidehelm::daemon {
@@ -19,11 +20,19 @@ class PlanningOcean {
  public:
   PlanningOcean(const OceanSource& source, const mission::PlanningRequest& request)
       : ocean_{source.forecast.ocean()}, full_{source.forecast.full()}, deep_{source.forecast.facts().levels > 1} {
-    if (!request.correction || !request.correction->plausible()) return;
-    corrected_.emplace(ocean_, *request.correction);
-    corrected_full_.emplace(full_, *request.correction);
+    if (request.correction && request.correction->plausible()) {
+      corrected_.emplace(ocean_, *request.correction);
+      corrected_full_.emplace(full_, *request.correction);
+    }
+    if (request.motion == vehicle::MotionModel::yo_yo && deep_)
+      yo_.emplace(*full(), request.problem.glider, request.problem.schedule, request.problem.start.fix_s);
   }
-  [[nodiscard]] ocean::Ocean ocean() const { return corrected_ ? corrected_->ocean() : ocean_; }
+  PlanningOcean(const PlanningOcean&) = delete;
+  PlanningOcean& operator=(const PlanningOcean&) = delete;
+  [[nodiscard]] ocean::Ocean ocean() const {
+    const auto waters = corrected_ ? corrected_->ocean() : ocean_;
+    return yo_ ? ocean::Ocean{*yo_, waters.surface} : waters;
+  }
   /// With its depths; none for a forecast that has none.
   [[nodiscard]] std::optional<ocean::FieldRef> full() const {
     if (!deep_) return std::nullopt;
@@ -36,6 +45,7 @@ class PlanningOcean {
   bool deep_;
   std::optional<ocean::CorrectedOcean> corrected_;
   std::optional<ocean::CorrectedField> corrected_full_;
+  std::optional<vehicle::YoField> yo_;
 };
 
 safety::Promise promise_of(const model::WaypointList& list, const vehicle::FlownList& flown,

@@ -25,6 +25,11 @@ inline void read(const nlohmann::json& j, Heading& h) {
 }
 }  // namespace glidehelm
 
+namespace glidehelm::vehicle {
+inline nlohmann::json write(MotionModel m) { return static_cast<int>(m); }
+inline void read(const nlohmann::json& j, MotionModel& m) { values::read_enum(j, m, MotionModel::yo_yo); }
+}  // namespace glidehelm::vehicle
+
 namespace glidehelm::planning {
 inline nlohmann::json write(PlanStatus s) { return static_cast<int>(s); }
 inline void read(const nlohmann::json& j, PlanStatus& s) { values::read_enum(j, s, PlanStatus::closest_approach); }
@@ -178,7 +183,7 @@ void members(PlanningRequest& r, F&& f) {
   f("id", r.id), f("surfacing", r.surfacing), f("purpose", r.purpose), f("problem", r.problem), f("method", r.method),
       f("slot", r.slot);
   f("max_waypoints", r.max_waypoints), f("list_radius_m", r.list_radius), f("at_end", r.at_end), f("stamp_ms", r.stamp);
-  f("horizon_wanted_s", r.horizon_wanted), f("correction", r.correction), f("queued", r.queued);
+  f("horizon_wanted_s", r.horizon_wanted), f("correction", r.correction), f("motion", r.motion), f("queued", r.queued);
 }
 template <class F>
 void members(BeginPlanning& e, F&& f) {

@@ -39,6 +39,7 @@ struct PlanningRequest {
   Instant stamp;                                     ///< for the file's comment
   Seconds horizon_wanted{};                          ///< 0 = automatic: 3 × the still-water time
   std::optional<ocean::LocalCorrection> correction;  ///< of the forecast, by the currents that the glider measured
+  vehicle::MotionModel motion{};  ///< of the plan; what is promised is flown in all depths either way
   /// A file of ours that still lies in to-glider: it is flown from this fix and given as the first candidate, its bytes
   /// unchanged, so that the verifier judges it for this surfacing.
   std::optional<QueuedFile> queued;

@@ -13,6 +13,8 @@
 #include "core/ocean/analytic.hpp"
 #include "core/ocean/time_axis.hpp"
 #include "core/planning/lattice_choice.hpp"
+#include "core/vehicle/force_balance.hpp"
+#include "core/vehicle/yo_field.hpp"
 
 /// What a pilot wants, and the machine that carries it out.
 namespace glidehelm::mission {
@@ -84,12 +86,14 @@ struct Mission {
   std::optional<GeoPoint> start;      ///< start.lat_deg, start.lon_deg (plan and rehearse only)
   std::optional<Instant> start_time;  ///< start.time
 
-  MetresPerSecond horizontal_speed{0.30};  ///< vehicle.horizontal_speed_m_per_s
-  Radians glide_angle{degrees(26)};        ///< vehicle.glide_angle_deg
-  Metres dive_depth{200};                  ///< vehicle.dive_depth_m
-  Metres climb_to{20};                     ///< vehicle.climb_to_m
-  int current_correction{1};               ///< vehicle.current_correction
-  std::optional<Radians> frame_rotation;   ///< vehicle.local_frame_rotation_deg; none: learned, 0 until then
+  MetresPerSecond horizontal_speed{0.30};            ///< vehicle.horizontal_speed_m_per_s
+  Radians glide_angle{degrees(26)};                  ///< vehicle.glide_angle_deg
+  Metres dive_depth{200};                            ///< vehicle.dive_depth_m
+  Metres climb_to{20};                               ///< vehicle.climb_to_m
+  vehicle::MotionModel motion{};                     ///< vehicle.motion
+  std::optional<vehicle::FlightModel> flight_model;  ///< vehicle.force_balance: then speed and angle are its means
+  int current_correction{1};                         ///< vehicle.current_correction
+  std::optional<Radians> frame_rotation;             ///< vehicle.local_frame_rotation_deg; none: learned, 0 until then
 
   Seconds stint{4 * 3600.0};        ///< schedule.stint_h, or from schedule.half_cycles
   Seconds first_stint{4 * 3600.0};  ///< schedule.first_stint_h

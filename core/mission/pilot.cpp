@@ -387,6 +387,7 @@ void Pilot::begin_planning() {
   request.stamp = now_.utc;
   request.horizon_wanted = mission_->horizon.value_or(Seconds{0});
   request.correction = in_use_.correction;
+  request.motion = mission_->motion;
   if (file_.in_folder()) request.queued = file_.file();
   out_.push_back(BeginPlanning{std::move(request)});
   set_timer(Timer::budget, later(first_heard_, mission_->budget));

@@ -8,6 +8,7 @@
 #include "daemon/cli/field_verbs.hpp"
 #include "daemon/cli/mafile.hpp"
 #include "daemon/cli/plan.hpp"
+#include "daemon/cli/polar.hpp"
 #include "daemon/cli/rehearse.hpp"
 #include "daemon/cli/replay.hpp"
 #include "daemon/world/program_version.hpp"
@@ -168,6 +169,26 @@ void add_compare(CLI::App& app, Action& action) {
   });
 }
 
+void add_polar(CLI::App& app, Action& action) {
+  auto o = std::make_shared<cli::PolarOptions>();
+  auto* verb = app.add_subcommand("polar", "Speeds of a glider by pitch and pump volume: the spider plot");
+  verb->add_option("MISSION", o->mission, "Mission file with vehicle.force_balance (default: that section's defaults)");
+  verb->add_option("--depth", o->depth_m, "Metres: where the water's density is taken")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 6000.0));
+  verb->add_option("--csv", o->csv, "Write every point to this new file");
+  verb->add_option("--svg", o->svg, "Draw it into this new file");
+  verb->add_flag("--json", o->json, "One JSON document on standard output (schema glidehelm/polar/v1)");
+  verb->footer(
+      "The forces of lift, drag, buoyancy and weight decide how fast a glider goes. Put hull, pump and pitch into\n"
+      "vehicle.force_balance of the mission, and plans use the speed and glide angle that follow. Example:\n"
+      "  glidehelm polar leg-2.yaml --svg polar.svg\n"
+      "\n"
+      "Exit: 0 done, 1 the mission's trim does not fly, 2 usage.");
+  verb->callback(
+      [o, &action] { action = [o](world::World& w) { return cli::run_polar(*o, w, std::cout, std::cerr); }; });
+}
+
 void add_replay(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::ReplayOptions>();
   auto* verb = app.add_subcommand("replay", "Every surfacing of dialog logs, and why a fix is refused");
@@ -234,6 +255,7 @@ int main(int argc, char** argv) {
   add_plan(app, action);
   add_compare(app, action);
   add_rehearse(app, action);
+  add_polar(app, action);
   add_replay(app, action);
   add_mafile(app, action);
   cli::add_field(app, action);

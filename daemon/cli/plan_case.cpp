@@ -4,37 +4,15 @@
 
 #include <cmath>
 
-#include "config/mission.hpp"
 #include "core/base/utc.hpp"
 #include "core/planning/registry.hpp"
 #include "daemon/candidate.hpp"
 
 namespace glidehelm::cli {
 
-namespace {
-
-Expected<mission::Mission, Trouble> read_mission(const PlanOptions& options, world::Files& files,
-                                                 std::string& mission_text) {
-  const auto bytes = files.read(options.mission, std::size_t{1} << 20);
-  if (!bytes) return unexpected(Trouble{2, bytes.error().message()});
-  mission_text = *bytes;
-  const auto load = [&files](const std::string& path) -> Expected<std::string, config::Unreadable> {
-    auto text = files.read(path, std::size_t{16} << 20);
-    if (!text) return unexpected(config::Unreadable{text.error().message()});
-    return std::move(text).value();
-  };
-  auto mission = config::read_mission(*bytes, options.mission, load);
-  if (mission) return std::move(mission).value();
-  std::string all;
-  for (const auto& error : mission.error()) all += (all.empty() ? "" : "\n") + error.message();
-  return unexpected(Trouble{2, all});
-}
-
-}  // namespace
-
 Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& world, std::ostream& err) {
   Case c;
-  auto mission = read_mission(options, world.files, c.mission_text);
+  auto mission = mission_from(options.mission, world.files, c.mission_text);
   if (!mission) return unexpected(mission.error());
   c.mission = std::move(mission).value();
   if (!options.method.empty()) c.mission.method = options.method;
@@ -100,6 +78,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.problem.seed = options.seed.value_or(m.seed);
   r.problem.lattice = m.lattice;
   r.method = m.method;
+  r.motion = m.motion;
   r.slot = m.slot;
   r.max_waypoints = m.max_waypoints;
   r.list_radius = m.list_radius;

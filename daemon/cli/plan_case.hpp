@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/mission/event.hpp"
+#include "daemon/cli/mission_file.hpp"
 #include "daemon/cli/plan.hpp"
 #include "daemon/ocean_source.hpp"
 
@@ -17,12 +18,6 @@ struct Case {
   std::shared_ptr<const daemon::ChartSource> chart;
   std::shared_ptr<const daemon::OceanSource> ocean;
   mission::PlanningRequest request;
-};
-
-/// A failure with its exit code.
-struct Trouble {
-  int code{};
-  std::string message;
 };
 
 /// Reads mission, coast and forecast for `plan` and `rehearse`. Warnings go to `err`. The start is --from, else the mission's; the time is

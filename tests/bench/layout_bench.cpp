@@ -240,8 +240,7 @@ class Cells {
   }
   template <class See>
   void corners(const Place& p, std::size_t times, const See& see) const {
-    for (std::size_t t = 0; t < times; ++t)
-      see(cells_.data() + (p.time + t) * slice_ + p.row * columns_ + p.column);
+    for (std::size_t t = 0; t < times; ++t) see(cells_.data() + (p.time + t) * slice_ + p.row * columns_ + p.column);
   }
   [[nodiscard]] std::size_t bytes() const { return cells_.size() * sizeof(Cell); }
 
@@ -315,7 +314,10 @@ std::vector<Place> anywhere(const Size& size, std::size_t count) {
   for (auto& p : all)
     p = {static_cast<std::uint32_t>(size.times > 1 ? random() % (size.times - 1) : 0),
          static_cast<std::uint32_t>(random() % (size.rows - 1)),
-         static_cast<std::uint32_t>(random() % (size.columns - 1)), part(random), part(random), part(random)};
+         static_cast<std::uint32_t>(random() % (size.columns - 1)),
+         part(random),
+         part(random),
+         part(random)};
   return all;
 }
 /// 18 lanes spread from one node over half a stint of four cells, 64 evaluations each; then from another node.
@@ -359,7 +361,8 @@ std::vector<const volatile char*> lines_of(const Layout& layout, const std::vect
     const std::size_t begin = all.size();
     layout.corners(place, times, [&](const void* corner) {
       const auto* const line = reinterpret_cast<const char*>(reinterpret_cast<std::uintptr_t>(corner) / 64 * 64 + 32);
-      if (std::find(all.begin() + static_cast<std::ptrdiff_t>(begin), all.end(), line) == all.end()) all.push_back(line);
+      if (std::find(all.begin() + static_cast<std::ptrdiff_t>(begin), all.end(), line) == all.end())
+        all.push_back(line);
     });
   }
   return all;
@@ -408,14 +411,17 @@ void compare(const char* what, const Size& size, bool random_order) {
               plain_bytes * 1e-6, random_order ? "random" : "a search's");
   std::printf("%-24s %9s %11s %7s %9s %6s %7s\n", "layout", "M eval/s", "arithmetic", "loads", "of limit", "lines",
               "memory");
-  const Result all[] = {
-      measure<Rows, kTimed>(values, size, places, corner),        measure<Planes, kTimed>(values, size, places, corner),
-      measure<TimesInside, kTimed>(values, size, places, corner), measure<Squares, kTimed>(values, size, places, corner),
-      measure<Cells, kTimed>(values, size, places, corner),       measure<Shorts, kTimed>(values, size, places, corner)};
+  const Result all[] = {measure<Rows, kTimed>(values, size, places, corner),
+                        measure<Planes, kTimed>(values, size, places, corner),
+                        measure<TimesInside, kTimed>(values, size, places, corner),
+                        measure<Squares, kTimed>(values, size, places, corner),
+                        measure<Cells, kTimed>(values, size, places, corner),
+                        measure<Shorts, kTimed>(values, size, places, corner)};
   for (const auto& r : all)
-    std::printf("%-24s %9.1f %11.1f %7.1f %7.0f %% %6.2f %6.2fx%s\n", r.layout, r.rate * 1e-6, r.arithmetic * 1e-6,
-                r.loads * 1e-6, 100 * r.rate / std::min(r.arithmetic, r.loads), r.lines, r.bytes / plain_bytes,
-                std::abs(r.check - all[0].check) <= (r.layout == Shorts::name ? 1e-4 * kPlaces : 0.0) ? "" : "  DIFFERS");
+    std::printf(
+        "%-24s %9.1f %11.1f %7.1f %7.0f %% %6.2f %6.2fx%s\n", r.layout, r.rate * 1e-6, r.arithmetic * 1e-6,
+        r.loads * 1e-6, 100 * r.rate / std::min(r.arithmetic, r.loads), r.lines, r.bytes / plain_bytes,
+        std::abs(r.check - all[0].check) <= (r.layout == Shorts::name ? 1e-4 * kPlaces : 0.0) ? "" : "  DIFFERS");
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ namespace {
 /// The published file, read by the child.
 ocean::Grid read(const std::string& file) {
   const test::ScratchFolder folder;
-  const auto ran = test::run_command(std::string{GLIDEHELM_BIN} + "/glidehelm-ingest -o " + (folder / "grid") + " " + file, folder);
+  const auto ran =
+      test::run_command(std::string{GLIDEHELM_BIN} + "/glidehelm-ingest -o " + (folder / "grid") + " " + file, folder);
   INFO(ran.err);
   REQUIRE(ran.code == 0);
   const auto bytes = test::file_bytes(folder / "grid");
@@ -81,7 +82,8 @@ TEST_CASE("real data: in the Ionian Sea the mean over 0 to 400 m turns the route
   const auto grid = read(data + "/currents/cmems_glo12_ionian_3d/currents.nc");
   ocean::GriddedOptions options;
   options.mask_is_land = true;  // the model's own coast: nothing here goes near it
-  const auto deep = ocean::Forecast::prepare(ocean::view_of(grid), ocean::DiveProfile::between(Metres{0}, Metres{400}), options, {});
+  const auto deep =
+      ocean::Forecast::prepare(ocean::view_of(grid), ocean::DiveProfile::between(Metres{0}, Metres{400}), options, {});
   REQUIRE(deep);
   const ocean::Ocean in_the_mean = deep->ocean(), at_the_surface{in_the_mean.surface, in_the_mean.surface};
 
@@ -90,7 +92,9 @@ TEST_CASE("real data: in the Ionian Sea the mean over 0 to 400 m turns the route
   int count = 0;
   for (const double lat : grid.axes.lats_deg)
     for (const double lon : grid.axes.lons_deg) {
-      const auto at = [&](ocean::FieldRef field) { return field.sample(geo_point(lat, lon), grid.axes.times_s.front()); };
+      const auto at = [&](ocean::FieldRef field) {
+        return field.sample(geo_point(lat, lon), grid.axes.times_s.front());
+      };
       const auto mean = at(in_the_mean.dive), top = at(in_the_mean.surface);
       if (!mean || !top) continue;
       const double east = mean->current.east.si() - top->current.east.si();
@@ -101,8 +105,8 @@ TEST_CASE("real data: in the Ionian Sea the mean over 0 to 400 m turns the route
     }
   REQUIRE(count > 2000);
   CHECK(std::sqrt(sum / count) > 0.1);
-  std::printf("rms over %d nodes: surface %.3f m/s, difference of the mean %.3f m/s\n", count, std::sqrt(surface / count),
-              std::sqrt(sum / count));
+  std::printf("rms over %d nodes: surface %.3f m/s, difference of the mean %.3f m/s\n", count,
+              std::sqrt(surface / count), std::sqrt(sum / count));
 
   // The cheap answer to "does the depth matter": the surface's plan, held in the water that the glider dives through, misses its goal by more than
   // a stint, while the mean's own plan arrives.
@@ -124,13 +128,16 @@ TEST_CASE("real data: in the Ionian Sea the mean over 0 to 400 m turns the route
     REQUIRE(by_surface.reaches_goal());
     CHECK(std::isnan(held.arrival_s));
     CHECK(held.nearest.si() > p.glider.horizontal_speed.si() * p.schedule.stint.count());
-    CHECK(hold(by_mean, p, in_the_mean).nearest.si() < 4000);  // of the lists flown, whose headings are held here: near, not exact
+    CHECK(hold(by_mean, p, in_the_mean).nearest.si() <
+          4000);  // of the lists flown, whose headings are held here: near, not exact
     farthest_apart = std::max(farthest_apart, apart(by_mean, by_surface));
-    std::printf("%.0f km, %.1f h in still water: mean %.1f h, surface promises %.1f h and, held in the mean, comes no nearer than %.0f km; "
-                "ways %.0f km apart\n",
-                distance(from, to).si() / 1e3, planning::still_water_time(p).count() / 3600,
-                (by_mean.arrival_s - p.start.fix_s) / 3600, (by_surface.arrival_s - p.start.fix_s) / 3600,
-                held.nearest.si() / 1e3, apart(by_mean, by_surface) / 1e3);
+    std::printf(
+        "%.0f km, %.1f h in still water: mean %.1f h, surface promises %.1f h and, held in the mean, comes no nearer "
+        "than %.0f km; "
+        "ways %.0f km apart\n",
+        distance(from, to).si() / 1e3, planning::still_water_time(p).count() / 3600,
+        (by_mean.arrival_s - p.start.fix_s) / 3600, (by_surface.arrival_s - p.start.fix_s) / 3600,
+        held.nearest.si() / 1e3, apart(by_mean, by_surface) / 1e3);
   }
   CHECK(farthest_apart > 30e3);
 }

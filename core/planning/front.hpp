@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
 #include "core/chart/chart.hpp"
 #include "core/ocean/field.hpp"
+#include "core/planning/wall_walk.hpp"
 #include "core/planning/winding.hpp"
 #include "core/vehicle/motion.hpp"
 
@@ -30,8 +32,14 @@ namespace glidehelm::planning {
 /// - `prune`: swallowtails grow without limit and are cut. A place about which the polygon winds is reached (the degree of
 ///   the map from slower vehicles' extremals to the plane); a marker is dropped when that holds for its cell and the eight
 ///   around it. What is cut off is inside for good: from inside the set no motion leads to its boundary.
-/// - walls: a marker that would leave the water stays, and the first in each half spacing of wall sends headings to all sides; those that run along the wall or
-///   round its end carry the front on. A stuck marker stays also where a current would tear it off: too early, not too late.
+/// - coasts (borders of the chart): a marker that meets one becomes two that walk along it, one to each side (wall_walk.hpp),
+///   and each is the front's end there until it meets the next one on the same wall. So a front goes round corners and
+///   through straits of any width, and is of second order there too. A walker leaves markers behind, which stay: the
+///   polygon keeps the shape of the coast. Near coasts edges are shorter (`spacing_near`).
+/// - other walls (land that only the field knows, water without data, shallows): a marker that would leave the water stays, and
+///   the first in each half spacing of wall sends headings to all sides; those that run along the wall or round its end carry the
+///   front on, late by a few spacings.
+/// What is stuck stays also where a current would tear it off: too early, not too late.
 ///
 /// Radians, metres, seconds, m/s. Deterministic. One step costs eight current evaluations per marker.
 class Front {
@@ -53,18 +61,32 @@ class Front {
   void stop(const std::function<bool(double lat, double lon)>& useless);
   [[nodiscard]] const std::vector<Marker>& markers() const { return markers_; }
   [[nodiscard]] bool complete() const { return complete_; }
-  [[nodiscard]] bool met_land() const { return met_land_; }  ///< or the border of an area: a wall of the chart
+  [[nodiscard]] bool met_coast() const { return met_coast_; }  ///< or the border of an area
+  /// Another wall of the chart, on which there is no walking: shallow water.
+  [[nodiscard]] bool met_shallows() const { return met_shallows_; }
   /// A wall that the field itself has: its mask, or water without data. Its border (a convex box) and its end in time are none.
   [[nodiscard]] bool met_dry() const { return met_dry_; }
-  [[nodiscard]] std::size_t evaluations() const { return evaluations_; }
+  [[nodiscard]] std::size_t evaluations() const { return evaluations_ + walk_.evaluations(); }
 
  private:
-  void move_batch(ocean::FieldRef field, double speed, double t_s, double dt, std::size_t first, std::size_t last);
+  void move(ocean::FieldRef field, double speed, double t_s, double dt, std::span<Marker* const> moving);
+  void graze(ocean::FieldRef field, double speed, double t_s, double dt);
+  [[nodiscard]] bool water_between(const Marker& a, const Marker& b) const;
   void settle(Marker& m, const Marker& before, ocean::FieldRef field, double speed, double t_s, double dt,
               std::uint8_t lost);
+  std::vector<bool> deep(double t_s, std::vector<bool> asked);
+  void rest_inside(double t_s);
+  [[nodiscard]] bool is_spot(std::span<const Marker> coast) const;
   bool blocked(std::int64_t row, std::int64_t column, double t_s);
   bool fan_out();
+  void walk(ocean::FieldRef field, double speed, double t_s, double dt);
+  std::optional<double> send_off(ocean::FieldRef field, double speed, double t_s, double dt, const vehicle::Disc& goal);
+  void walk_one(std::size_t i, WallWalk::Way way, ocean::FieldRef field, double speed, double t_s, double dt);
+  [[nodiscard]] bool has_passed(const Marker& walker, const Marker& m) const;
+  void part_at_coasts(ocean::FieldRef field, double speed, double t_s, double dt);
+  [[nodiscard]] double spacing_near(double lat, double lon) const;
   [[nodiscard]] std::int64_t wall_cell(const Marker& m) const;
+  [[nodiscard]] bool spare(const Marker& last, const Marker& m, const Marker& next) const;
   void creep(const Marker& a, const Marker& b, std::vector<Marker>& out);
   void add_between(const Marker& a, const Marker& b, std::vector<Marker>& out);
   [[nodiscard]] bool clear_way(const Marker& from, double lat, double lon) const;
@@ -73,14 +95,22 @@ class Front {
   ocean::FieldRef dive_;
   const chart::Chart& chart_;
   double clearance_, spacing_;
+  WallWalk walk_;
   Lattice lattice_;                                 ///< of half the spacing
   std::unordered_map<std::int64_t, bool> blocked_;  ///< middles of its cells; only asked, never walked through
   std::vector<Marker> markers_, before_;
-  std::vector<std::size_t> moving_;
+  std::vector<Marker*> moving_;
+  struct Sent {
+    std::size_t from;  ///< the walker
+    bool forward;
+    std::vector<Marker> markers;
+  };
+  std::vector<Sent> sent_;                           ///< by walkers in this step, by their order
   std::unordered_set<std::int64_t> walls_, creeps_;  ///< cells that have sent; only asked, never walked through
   double room_{};  ///< metres that nothing can have come nearer than to the goal's disc
-  bool met_land_{}, met_dry_{};
+  bool met_coast_{}, met_shallows_{}, met_dry_{};
   std::size_t after_prune_{};
+  unsigned steps_{};
   bool complete_{true};
   std::size_t evaluations_{};
 };

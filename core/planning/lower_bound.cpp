@@ -12,8 +12,9 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr double kOwnClearance = 0.1;  // of the spacing: by how much walls are drawn back
-constexpr double kCorners = 6;         // spacings that the front may be late behind the corners of land
+constexpr double kOwnClearance = 25;  // metres by which walls are drawn back
+constexpr double kCoasts = 0.15;      // spacings that the front may be late behind coasts: its shortest edges there
+constexpr double kCorners = 6;        // and behind the corners of walls on which it cannot walk
 
 /// One run of a front from the fix to the goal.
 class Run {
@@ -30,7 +31,7 @@ class Run {
         until_{until},
         envelope_{speed + ocean.dive.fastest().si(), ocean.surface.fastest().si(), problem.schedule.stint.count(),
                   problem.schedule.surface.count()},
-        front_{problem.start.fix, ocean.dive, chart, clearance(problem, chart, spacing), spacing} {}
+        front_{problem.start.fix, ocean.dive, chart, clearance(problem, chart), spacing} {}
 
   End go(const Budget& budget, int surfacings_per_isochrone) {
     if (distance(problem_.start.fix, goal_.centre) <= goal_.radius) return reach(0);
@@ -52,16 +53,17 @@ class Run {
 
   [[nodiscard]] double arrival() const { return now_; }
   [[nodiscard]] std::uint64_t steps() const { return front_.evaluations() / 8; }
-  [[nodiscard]] bool met_land() const { return front_.met_land(); }
+  [[nodiscard]] bool met_coast() const { return front_.met_coast(); }
+  [[nodiscard]] bool met_shallows() const { return front_.met_shallows(); }
   [[nodiscard]] bool met_dry() const { return front_.met_dry(); }
   [[nodiscard]] std::size_t evaluations() const { return front_.evaluations(); }
   [[nodiscard]] std::vector<Isochrone> isochrones() { return std::move(isochrones_); }
 
  private:
   /// A start or goal inside the margin makes it smaller everywhere: the reached set only grows by that.
-  static double clearance(const Problem& problem, const chart::Chart& chart, double spacing) {
+  static double clearance(const Problem& problem, const chart::Chart& chart) {
     const double start = chart.clearance(problem.start.fix).si() - 1.0;
-    return std::max(0.0, std::min(problem.coast_margin.si() - kOwnClearance * spacing, start));
+    return std::max(0.0, std::min(problem.coast_margin.si() - kOwnClearance, start));
   }
   End reach(double when) {
     now_ = when;
@@ -146,14 +148,10 @@ class Certificate {
     if (!coarse) return cut();
     const double other = std::isnan(*coarse) ? until : *coarse;
     const double error = std::abs(other - *fine) + kLeastError * *fine;
-    if (!met_land_ && !met_dry_) {
-      certify(*fine, error);
-      return std::move(bound_);
-    }
-    double late = late_at_corners();
-    if (!met_dry_) {
-      // Does the coast matter? Without it the front has no corners to go round, and what it says is a bound in any case. Walls
-      // of the field itself cannot be taken away.
+    double late = late_at_walls();
+    if (met_shallows_ && !met_dry_) {
+      // Do the shallows matter? Without a chart the front has no corners to go round, and what it says is a bound in any case.
+      // Walls of the field itself cannot be taken away.
       const auto open = run(0, 1, until, 0, true);
       if (!open) return cut();
       const double detour = std::isnan(*open) ? 0.0 : std::max(0.0, *fine - *open);
@@ -170,7 +168,7 @@ class Certificate {
     bound_.travel_s = arrival - bound_.error_s;
   }
   Bound prove_unreachable() {
-    const double late = met_land_ || met_dry_ ? late_at_corners() : 0.0;
+    const double late = late_at_walls();
     const auto raised = run(kSpeedBar, 1, horizon_ + late, 0);
     if (!raised) return cut();
     if (!std::isnan(*raised)) {  // within the bar of the horizon: the faster vehicle's arrival is a bound
@@ -194,7 +192,10 @@ class Certificate {
     bound_.reason = std::move(reason);
     return std::move(bound_);
   }
-  [[nodiscard]] double late_at_corners() const { return kCorners * spacing_ / problem_.glider.horizontal_speed.si(); }
+  [[nodiscard]] double late_at_walls() const {
+    const double spacings = met_shallows_ || met_dry_ ? kCorners : met_coast_ ? kCoasts : 0.0;
+    return spacings * spacing_ / problem_.glider.horizontal_speed.si();
+  }
   Bound cut() { return nothing("the front was stopped before it came to the goal"); }
 
   /// Seconds from the fix, NaN when the goal is not reached; none when the budget ended.
@@ -212,7 +213,8 @@ class Certificate {
     const auto end = one.go(rest, isochrones);
     bound_.statistics.expansions += one.steps();
     bound_.statistics.current_evaluations += one.evaluations();
-    met_land_ = met_land_ || one.met_land();
+    met_coast_ = met_coast_ || one.met_coast();
+    met_shallows_ = met_shallows_ || one.met_shallows();
     met_dry_ = met_dry_ || one.met_dry();
     if (isochrones > 0) bound_.isochrones = one.isochrones();
     if (end == Run::End::cut) return std::nullopt;
@@ -225,7 +227,7 @@ class Certificate {
   const Budget& budget_;
   const BoundSettings& settings_;
   double spacing_, step_, horizon_;
-  bool met_land_{}, met_dry_{};
+  bool met_coast_{}, met_shallows_{}, met_dry_{};
   Bound bound_;
 };
 

@@ -44,11 +44,13 @@ inline constexpr double kSpeedBar = 0.005;
 ///
 /// Computed twice, the second time with twice the step and spacing. The method is of second order, so the finer result is
 /// about a third of the difference away from the truth; the whole difference and `kLeastError` of the time are the error
-/// bar, and `travel_s` has it subtracted. Behind corners of walls the front is late by a few spacings: where it met land or the
-/// border of an area, the time of six spacings is subtracted as well, but no more than the detour that the chart costs (a third
-/// run, without it, tells); where it met the field's own land or water without data, all of it. A passage narrower than a
-/// spacing may be lost: the bound, and `unreachable`, are then those of the way round it. Where the goal stays unreached the front is moved again with the speed raised by
-/// `kSpeedBar`, and only when that does not reach it either it is `unreachable`.
+/// bar, and `travel_s` has it subtracted. Where the front met coasts or borders of areas, which it walks round (wall_walk.hpp), its
+/// shortest edge there, 0.15 of the spacing, is subtracted as well. Behind other walls it is late by a few spacings: where it
+/// met shallows, the time of six spacings comes on top, but no more than the detour that the chart costs (a third
+/// run, without it, tells); where it met the field's own land or water without data, all of it. Passages between coasts down to
+/// some 20 m are gone through whatever the spacing; one between other walls may be lost when it is narrower than a spacing. Where
+/// the goal stays unreached the front is moved again with the speed raised by `kSpeedBar`, and only when that does not reach it
+/// either it is `unreachable`.
 ///
 /// `budget.work` counts steps of markers over all runs; with `expired` the answer is `cut`. The failures are those of
 /// `check_ends`. Some 10^6 steps of markers, 0.2 µs each, for 650 km.

@@ -1,8 +1,10 @@
 #include "core/planning/winding.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/local_metric.hpp"
 
@@ -69,6 +71,62 @@ class Raster {
   std::vector<std::int16_t> winds_;
 };
 
+/// Winding numbers of any places: the edges of a polygon by the rows that they cross.
+class Rows {
+ public:
+  Rows(const std::vector<Marker>& polygon, const Lattice& lattice) : polygon_{polygon}, lattice_{lattice} {
+    double south = 1e18, north = -1e18;
+    for (const auto& m : polygon) {
+      south = std::min(south, row_of(m.lat));
+      north = std::max(north, row_of(m.lat));
+    }
+    south_ = std::floor(south);
+    edges_.resize(static_cast<std::size_t>(std::floor(north) - south_) + 1);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const double a = row_of(polygon[i].lat) - south_, b = row_of(after(i).lat) - south_;
+      const auto last = static_cast<std::size_t>(std::max(a, b));
+      for (auto row = static_cast<std::size_t>(std::min(a, b)); row <= last; ++row)
+        edges_[row].push_back(static_cast<std::uint32_t>(i));
+    }
+  }
+  [[nodiscard]] bool winds_about(double lat, double lon) const {
+    const double row = row_of(lat) - south_;
+    if (!(row >= 0 && row < static_cast<double>(edges_.size()))) return false;
+    int winds = 0;
+    for (const auto i : edges_[static_cast<std::size_t>(row)]) {
+      const Marker &a = polygon_[i], &b = after(i);
+      if ((a.lat <= lat) == (b.lat <= lat)) continue;
+      if (a.lon + (b.lon - a.lon) * (lat - a.lat) / (b.lat - a.lat) < lon) winds += b.lat > a.lat ? 1 : -1;
+    }
+    return winds != 0;
+  }
+
+ private:
+  /// Narrow rows: beside coasts edges are short.
+  [[nodiscard]] double row_of(double lat) const { return 8 * (lat - lattice_.lat) * lattice_.per_lat; }
+  [[nodiscard]] const Marker& after(std::size_t i) const { return polygon_[i + 1 == polygon_.size() ? 0 : i + 1]; }
+
+  const std::vector<Marker>& polygon_;
+  Lattice lattice_;
+  double south_{};
+  std::vector<std::vector<std::uint32_t>> edges_;
+};
+
+/// Beside a coast: see deep_inside.
+bool deep_beside_coast(const Marker& m, const Rows& rows, const Lattice& lattice, const Surroundings& around) {
+  constexpr std::array kParts{1.0 / 64, 1.0 / 4};
+  const double s = std::sqrt(0.5);
+  const std::array<std::array<double, 2>, 8> turns{
+      {{1, 0}, {s, s}, {s, -s}, {0, 1}, {0, -1}, {-s, s}, {-s, -s}, {-1, 0}}};
+  for (const double part : kParts)
+    for (const auto& [ahead, right] : turns) {
+      const double lat = m.lat + part * (ahead * m.north - right * m.east) / lattice.per_lat;
+      const double lon = m.lon + part * (ahead * m.east + right * m.north) / lattice.per_lon;
+      if (!rows.winds_about(lat, lon) && around.is_open_to(m, lat, lon)) return false;
+    }
+  return true;
+}
+
 }  // namespace
 
 Lattice Lattice::about(double lat, double lon, double cell_m) {
@@ -76,11 +134,21 @@ Lattice Lattice::about(double lat, double lon, double cell_m) {
   return {lat, lon, metric.meridian_radius / cell_m, metric.parallel_radius / cell_m};
 }
 
-std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice,
-                              const std::function<bool(std::int64_t, std::int64_t)>& blocked) {
-  Raster raster{polygon, lattice};
+std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice, const Surroundings& around,
+                              const std::vector<bool>& asked) {
+  std::optional<Raster> raster;
+  std::optional<Rows> rows;
   std::vector<bool> deep(polygon.size());
-  for (std::size_t i = 0; i < polygon.size(); ++i) deep[i] = raster.deep(polygon[i], blocked);
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    if (!asked[i]) continue;
+    if (around.beside_coast(polygon[i])) {
+      if (!rows) rows.emplace(polygon, lattice);
+      deep[i] = deep_beside_coast(polygon[i], *rows, lattice, around);
+    } else {
+      if (!raster) raster.emplace(polygon, lattice);
+      deep[i] = raster->deep(polygon[i], around.blocked);
+    }
+  }
   return deep;
 }
 

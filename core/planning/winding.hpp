@@ -12,6 +12,10 @@ struct Marker {
   double east{}, north{1};  ///< unit normal
   double turn{};            ///< clockwise rate of the normal over the last step, rad/s
   bool stuck{};             ///< lies at a wall: land, an area's border, the end of the data
+  bool coast{};             ///< the wall is a border of the chart, on which it can walk
+  bool landed{};            ///< came to the coast in this step
+  bool forward{}, back{};   ///< walks along the coast towards the next marker, towards the one before
+  bool done{};              ///< of a coast: lies deep inside, and walks no more
   bool fanned{};            ///< its wall has sent headings to all sides
   double left{};            ///< seconds of the step that were left at the wall
   bool idle{};              ///< can be of no more use, and stays
@@ -25,11 +29,22 @@ struct Lattice {
   static Lattice about(double lat, double lon, double cell_m);
 };
 
-/// For each marker of a closed polygon whether it lies deep inside: the polygon winds about the middle of the marker's cell, and
-/// each of the eight cells around it has that too or is `blocked` (row, column), where nothing can go.
+/// What lies around a marker.
+struct Surroundings {
+  std::function<bool(std::int64_t row, std::int64_t column)> blocked;  ///< nothing can go to the middle of this cell
+  std::function<bool(const Marker&)> beside_coast;                     ///< a wall of the chart is as near as two cells
+  std::function<bool(const Marker&, double lat, double lon)> is_open_to;  ///< the straight way there is open
+};
+
+/// For each marker of a closed polygon whether it lies deep inside. In open water: the polygon winds about the middle of the
+/// marker's cell, and each of the eight cells around it has that too or is `blocked`. Beside a coast, where cells are too
+/// coarse: the polygon winds about each of 16 places around it that are open to it, at distances of 1/4 and 1/64
+/// cell; so a front in a narrow strait is not inside.
 ///
-/// Time: edges × the rows they cross, plus one pass over the cells of the polygon's box (2 bytes each).
-std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice,
-                              const std::function<bool(std::int64_t, std::int64_t)>& blocked);
+/// Time: edges × the rows they cross, plus one pass over the cells of the polygon's box (2 bytes each), plus for a marker
+/// beside a coast 16 times the edges in a row.
+/// Only of those that are `asked` after; of the others it is false.
+std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice, const Surroundings& around,
+                              const std::vector<bool>& asked);
 
 }  // namespace glidehelm::planning

@@ -57,8 +57,8 @@ bool WallWalk::settle(Marker& m) const {
   return true;
 }
 
-WallWalk::End WallWalk::walk(Marker& m, Way way, const Marker* towards, ocean::FieldRef field, double speed,
-                             double t_s, double seconds, std::vector<Marker>& sent) {
+WallWalk::End WallWalk::walk(Marker& m, Way way, const Marker* towards, ocean::FieldRef field, double speed, double t_s,
+                             double seconds, std::vector<Marker>& sent) {
   const double left = way == Way::forward ? 1.0 : -1.0;  // τ lies to the left or right of ν
   Border here = border(m.lat, m.lon);
   const auto motion_at = [&](double lat, double lon, const Border& b, double t) -> std::optional<Motion> {

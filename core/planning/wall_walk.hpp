@@ -28,7 +28,7 @@ namespace glidehelm::planning {
 class WallWalk {
  public:
   static constexpr double kMostBend = 0.1, kLongestStride = 500.0, kShortestStride = 4.0;  ///< rad, m, m
-  static constexpr double kSend = 0.2;   ///< rad
+  static constexpr double kSend = 0.2;                                                     ///< rad
   static constexpr double kOff = 2.0;    ///< metres beyond the clearance at which the border is followed
   static constexpr double kMeet = 15.0;  ///< metres: as near as this two on the same wall have met
 

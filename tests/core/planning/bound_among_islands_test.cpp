@@ -122,8 +122,7 @@ planning::Problem submerged(Point from, Point to) {
 /// The truth lies above the bound and, the bar being subtracted once, at most a second bar above that.
 void check(Point from, Point to, const std::vector<Polygon>& islands, test::Uniform c, Metres spacing = Metres{},
            double most = 0.005) {
-  const auto bound =
-      planning::lower_bound(submerged(from, to), {c, c}, chart_of(islands), {}, {.spacing = spacing});
+  const auto bound = planning::lower_bound(submerged(from, to), {c, c}, chart_of(islands), {}, {.spacing = spacing});
   REQUIRE(bound);
   REQUIRE(bound->kind == Bound::Kind::arrival);
   const double truth = least_time(from, to, islands, c);

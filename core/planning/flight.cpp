@@ -23,6 +23,8 @@ std::string_view word(NoPlan reason) {
       return "boxed_in";
     case NoPlan::out_of_budget:
       return "out_of_budget";
+    case NoPlan::unsuited_method:
+      return "unsuited_method";
   }
   return "?";
 }
@@ -106,17 +108,41 @@ Plan plan_from(std::string method, const vehicle::FlownList& flown, const Proble
     plan.remaining = std::min(plan.remaining, goal.radius);
     return plan;
   }
+  if (wants_least_distance(problem))
+    plan.remaining = distance(plan.stints.empty() ? problem.start.fix : plan.stints.back().surface, goal.centre);
   if (flown.lost)
     plan.reason = "the way ends after " + std::to_string(plan.stints.size()) +
                   " stints: " + std::string{vehicle::word(*flown.lost)};
   else
-    plan.reason = "the goal is not reached before the horizon";
+    plan.reason = wants_least_distance(problem) ? "the goal is not reached by the time of the objective"
+                                                : "the goal is not reached before the horizon";
   return plan;
 }
 
 bool better_than(const Plan& a, const Plan& b) {
   if (a.reaches_goal() != b.reaches_goal()) return a.reaches_goal();
   return a.reaches_goal() ? a.arrival_s < b.arrival_s : a.remaining < b.remaining;
+}
+
+bool wants_least_distance(const Problem& problem) { return std::holds_alternative<MinDistanceAt>(problem.objective); }
+
+Problem within_objective(const Problem& problem) {
+  Problem within = problem;
+  if (const auto* least = std::get_if<MinDistanceAt>(&problem.objective))
+    within.horizon_s = std::min(within.horizon_s, least->epoch_s);
+  return within;
+}
+
+int stints_within(const Problem& problem) {
+  const double seconds = problem.horizon_s - problem.start.fix_s;
+  int n = 0;
+  while (n < vehicle::kMostStints && problem.schedule.surfacing_time(n).count() <= seconds) ++n;
+  return n;
+}
+
+PlanFailure only_least_time(std::string_view method) {
+  return {NoPlan::unsuited_method, std::string{method} + " looks for the earliest arrival only, not for the least " +
+                                       "distance at a given time: use optimization, cts-astar or best"};
 }
 
 Seconds still_water_time(const Problem& problem) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "core/planning/planner.hpp"
 #include "core/vehicle/steering.hpp"
@@ -25,6 +26,15 @@ Plan plan_from(std::string method, const vehicle::FlownList& flown, const Proble
 
 /// True when `a` is the better answer: arriving beats not arriving, then earlier, then nearer; a tie is not better.
 bool better_than(const Plan& a, const Plan& b);
+
+/// True under MinDistanceAt.
+bool wants_least_distance(const Problem& problem);
+/// The problem with its horizon at the instant of MinDistanceAt where that is earlier; as it is under MinTime.
+Problem within_objective(const Problem& problem);
+/// How many stints surface by the horizon.
+int stints_within(const Problem& problem);
+/// The answer of a method that knows MinTime alone.
+PlanFailure only_least_time(std::string_view method);
 
 /// Still-water travel time of a problem, surface intervals included: (geodesic − radius)/U on the dive schedule.
 Seconds still_water_time(const Problem& problem);

@@ -30,10 +30,17 @@ struct PointGoal {
 };
 using GoalSpec = std::variant<PointGoal>;
 
+/// Arrive as early as can be (Thesis 3.1.1).
 struct MinTime {
   friend bool operator==(MinTime, MinTime) = default;
 };
-using Objective = std::variant<MinTime>;
+/// Be as near to the goal as can be at the last surfacing that is not later than an instant (Thesis 3.1.2): nothing is flown
+/// beyond it. Where the goal can be reached before, the earliest arrival is best.
+struct MinDistanceAt {
+  double epoch_s{};
+  friend bool operator==(MinDistanceAt, MinDistanceAt) = default;
+};
+using Objective = std::variant<MinTime, MinDistanceAt>;
 
 /// Where and when the clock of a plan starts: the accepted fix.
 struct Departure {
@@ -89,7 +96,8 @@ struct Plan {
   PlanStatus status{PlanStatus::closest_approach};
   std::vector<vehicle::Stint> stints;
   double arrival_s{};  ///< epoch seconds at which the goal radius is crossed; NaN when it is not
-  Metres remaining;    ///< geodesic distance from the goal's centre at the closest position reached
+  /// Geodesic distance from the goal's centre: at the closest position reached, or, under MinDistanceAt, at the last surfacing.
+  Metres remaining;
   std::string reason;  ///< in words, when the goal is not reached
   Statistics statistics;
   std::uint64_t cut_at{};  ///< work count at which `expired` stopped the search; 0 = it ran to its end
@@ -105,7 +113,8 @@ enum class NoPlan {
   goal_outside_field,
   no_forecast,
   boxed_in,
-  out_of_budget
+  out_of_budget,
+  unsuited_method  ///< the method does not answer problems of this kind: another one may
 };
 std::string_view word(NoPlan reason);
 /// A failure with the facts a pilot needs: "the goal is on land (0.8 km inside the coast)".

@@ -5,12 +5,15 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/ladder.hpp"
+#include "core/planning/optimization.hpp"
 #include "core/planning/refined_cts.hpp"
 
 namespace glidehelm::planning {
 
 std::vector<std::string> method_names() {
-  return {"direct", "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "best"};
+  return {
+      "direct", "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "optimization", "iterative-optimization",
+      "best"};
 }
 
 std::unique_ptr<const Planner> planner_named(std::string_view name) {
@@ -19,6 +22,8 @@ std::unique_ptr<const Planner> planner_named(std::string_view name) {
   if (name == "cts-astar") return std::make_unique<CtsAStar>();
   if (name == "abs-cts-astar") return std::make_unique<AbsCtsAStar>();
   if (name == "cts-astar-refined") return std::make_unique<RefinedCts>();
+  if (name == "optimization") return std::make_unique<Optimization>();
+  if (name == "iterative-optimization") return std::make_unique<IterativeOptimization>();
   if (name == "best") return std::make_unique<Ladder>();
   return nullptr;
 }

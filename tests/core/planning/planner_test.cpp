@@ -5,6 +5,7 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/ladder.hpp"
+#include "core/planning/optimization.hpp"
 #include "core/planning/refined_cts.hpp"
 #include "tests/contract/planner_contract.hpp"
 
@@ -12,7 +13,7 @@ using namespace glidehelm;
 using planning::NoPlan;
 
 TEMPLATE_TEST_CASE("every planner keeps the contract", "", planning::DirectToGoal, planning::CtsAStar,
-                   planning::RefinedCts, planning::Ladder) {
+                   planning::RefinedCts, planning::Ladder, planning::Optimization, planning::IterativeOptimization) {
   test::check_planner<TestType>();
 }
 
@@ -30,4 +31,5 @@ TEST_CASE("every reason for having no plan has a word of its own") {
   CHECK(planning::word(NoPlan::no_forecast) == "no_forecast");
   CHECK(planning::word(NoPlan::boxed_in) == "boxed_in");
   CHECK(planning::word(NoPlan::out_of_budget) == "out_of_budget");
+  CHECK(planning::word(NoPlan::unsuited_method) == "unsuited_method");
 }

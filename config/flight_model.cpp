@@ -24,8 +24,8 @@ Fields<Trim> trim_fields() {
   Fields<Trim> f;
   f.number({"pitch_down_deg", "how far the nose points down in a dive"}, &Trim::pitch_down, kDegree, from_to(1, 89));
   f.number({"pitch_up_deg", "how far it points up in a climb"}, &Trim::pitch_up, kDegree, from_to(1, 89));
-  f.number({"pumped_down_cm3", "volume of the pump in a dive, from its middle"}, &Trim::pumped_down_m3, kCubicCentimetre,
-           from_to(-2000, 0));
+  f.number({"pumped_down_cm3", "volume of the pump in a dive, from its middle"}, &Trim::pumped_down_m3,
+           kCubicCentimetre, from_to(-2000, 0));
   f.number({"pumped_up_cm3", "volume of the pump in a climb, from its middle"}, &Trim::pumped_up_m3, kCubicCentimetre,
            from_to(0, 2000));
   return f;
@@ -33,17 +33,20 @@ Fields<Trim> trim_fields() {
 
 Fields<Hull> hull_fields() {
   Fields<Hull> f;
-  f.number({"volume_l", "volume of the glider at the surface, pump in its middle"}, &Hull::volume_m3, kLitre, from_to(1, 1000));
-  f.maybe_number({"mass_kg", "mass of the glider", false, "neutral at `neutral_at_m`"}, &Hull::mass_kg, 1, from_to(1, 1000));
+  f.number({"volume_l", "volume of the glider at the surface, pump in its middle"}, &Hull::volume_m3, kLitre,
+           from_to(1, 1000));
+  f.maybe_number({"mass_kg", "mass of the glider", false, "neutral at `neutral_at_m`"}, &Hull::mass_kg, 1,
+                 from_to(1, 1000));
   f.number({"neutral_at_m", "depth at which it floats with the pump in its middle; not together with `mass_kg`"},
            &Hull::neutral_at, 1, from_to(0, 6000));
-  f.number({"compressibility_per_gpa", "share of the volume lost for each GPa of pressure"}, &Hull::compressibility_per_pa, 1e-9,
-           from_to(0, 5));
+  f.number({"compressibility_per_gpa", "share of the volume lost for each GPa of pressure"},
+           &Hull::compressibility_per_pa, 1e-9, from_to(0, 5));
   f.number({"expansion_per_c", "share of the volume won for each degree"}, &Hull::expansion_per_c, 1, from_to(0, 1e-3));
   f.number({"reference_c", "temperature at which the volume is given"}, &Hull::reference_c, 1, from_to(-5, 40));
   f.number({"area_m2", "area that the three coefficients are of"}, &Hull::area_m2, 1, from_to(0.001, 10));
   f.number({"drag", "coefficient of the parasite drag"}, &Hull::drag, 1, from_to(0.001, 2));
-  f.number({"induced_drag_per_rad2", "coefficient of the induced drag"}, &Hull::induced_drag_per_rad2, 1, from_to(0, 100));
+  f.number({"induced_drag_per_rad2", "coefficient of the induced drag"}, &Hull::induced_drag_per_rad2, 1,
+           from_to(0, 100));
   f.number({"lift_per_rad", "lift slope of hull and wings"}, &Hull::lift_per_rad, 1, from_to(0.01, 100));
   return f;
 }
@@ -65,7 +68,8 @@ void read_water(const At& at, FlightModel& model) {
     WaterLayer layer;
     if (expect_map(layer_at)) layer_fields().read(layer_at, layer);
     if (!model.water.empty() && layer.depth <= model.water.back().depth)
-      layer_at.complain("a layer that is not deeper than the one before it", yaml_number(layer.depth.si()), "depths that grow");
+      layer_at.complain("a layer that is not deeper than the one before it", yaml_number(layer.depth.si()),
+                        "depths that grow");
     model.water.push_back(layer);
   }
 }

@@ -12,7 +12,8 @@ constexpr double kDepthStep = 2.0;  // metres
 
 /// Displaced volume per volume at the surface (2.31 without the pump).
 double swollen(const Hull& hull, const WaterLayer& water, double pressure_pa) {
-  return 1 - hull.compressibility_per_pa * pressure_pa + hull.expansion_per_c * (water.temperature_c - hull.reference_c);
+  return 1 - hull.compressibility_per_pa * pressure_pa +
+         hull.expansion_per_c * (water.temperature_c - hull.reference_c);
 }
 
 double displaced(const Hull& hull, const WaterColumn& water, Metres depth) {
@@ -45,7 +46,8 @@ std::optional<Radians> angle_of_attack(const Hull& hull, Radians pitch) {
   // f(α) = a·α·tan(θ + α) − C_D0 − C_D1·α² is negative at 0. Its first root is the flight; whether there is one before the path is
   // vertical is seen on a scan, which also brackets it for the bisection.
   const auto f = [&](double alpha) {
-    return hull.lift_per_rad * alpha * std::tan(pitch.si() + alpha) - hull.drag - hull.induced_drag_per_rad2 * alpha * alpha;
+    return hull.lift_per_rad * alpha * std::tan(pitch.si() + alpha) - hull.drag -
+           hull.induced_drag_per_rad2 * alpha * alpha;
   };
   const double largest = std::min(kPi / 2 - pitch.si(), kLargestAttack.si());
   if (!(largest > 0)) return std::nullopt;
@@ -107,9 +109,9 @@ Expected<YoMeans, std::string> yo_means(const Hull& hull, const Trim& trim, cons
     for (const bool sinking : {true, false}) {
       const double net = net_buoyancy(hull, water, z, sinking ? trim.pumped_down_m3 : trim.pumped_up_m3);
       if (sinking ? net >= 0 : net <= 0)
-        return unexpected(std::string{"the glider does not "} + (sinking ? "sink" : "climb") + " at " + number("%.0f", z.si()) +
-                          " m: it is " + number("%.0f", std::abs(net) / kGravity * 1000) + " g too " +
-                          (sinking ? "light" : "heavy"));
+        return unexpected(std::string{"the glider does not "} + (sinking ? "sink" : "climb") + " at " +
+                          number("%.0f", z.si()) + " m: it is " + number("%.0f", std::abs(net) / kGravity * 1000) +
+                          " g too " + (sinking ? "light" : "heavy"));
       const auto glide = steady_glide(hull, sinking ? trim.pitch_down : trim.pitch_up, net, water.density(z));
       if (!glide)
         return unexpected("a pitch of " + number("%.1f", in_degrees(sinking ? trim.pitch_down : trim.pitch_up)) +

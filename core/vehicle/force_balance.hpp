@@ -14,16 +14,16 @@ namespace glidehelm::vehicle {
 /// What a hull is (Thesis Table 2.1). The defaults are in the range that is published for Slocum gliders; a team's own values come
 /// from its flight-model calibration.
 struct Hull {
-  double volume_m3{0.070};             ///< V_g at atmospheric pressure and `reference_c`
-  std::optional<double> mass_kg;       ///< m_g; none: neutral at `neutral_at` with the pump in its middle
-  Metres neutral_at{100};              ///< only without a mass
+  double volume_m3{0.070};               ///< V_g at atmospheric pressure and `reference_c`
+  std::optional<double> mass_kg;         ///< m_g; none: neutral at `neutral_at` with the pump in its middle
+  Metres neutral_at{100};                ///< only without a mass
   double compressibility_per_pa{5e-10};  ///< ε
-  double expansion_per_c{7e-5};        ///< α_T
-  double reference_c{13.2};            ///< T_0
-  double area_m2{0.1};                 ///< S: the area that the coefficients are of
-  double drag{0.1};                    ///< C_D0, parasite drag
-  double induced_drag_per_rad2{2.88};  ///< C_D1 = C_D1,h + C_D1,w
-  double lift_per_rad{6.1};            ///< a_h + a_w
+  double expansion_per_c{7e-5};          ///< α_T
+  double reference_c{13.2};              ///< T_0
+  double area_m2{0.1};                   ///< S: the area that the coefficients are of
+  double drag{0.1};                      ///< C_D0, parasite drag
+  double induced_drag_per_rad2{2.88};    ///< C_D1 = C_D1,h + C_D1,w
+  double lift_per_rad{6.1};              ///< a_h + a_w
   friend bool operator==(const Hull&, const Hull&) = default;
 };
 
@@ -85,7 +85,8 @@ struct YoMeans {
 };
 /// Means of one dive from `upper` to `lower` and one climb back (the glide is steady at each depth; integrated over depth in steps
 /// of at most 2 m by the midpoint rule). The failure says where the glider does not sink or climb, or that the pitch is too flat.
-Expected<YoMeans, std::string> yo_means(const Hull& hull, const Trim& trim, const WaterColumn& water, Metres upper, Metres lower);
+Expected<YoMeans, std::string> yo_means(const Hull& hull, const Trim& trim, const WaterColumn& water, Metres upper,
+                                        Metres lower);
 
 /// A point of the glide polar ("spider plot", Thesis Figures 2.11 and 2.12).
 struct PolarPoint {

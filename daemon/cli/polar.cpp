@@ -61,11 +61,13 @@ std::string svg(const Curves& curves, double depth_m) {
   const auto x = [&](double horizontal) { return kMargin + horizontal * kScale; };
   const auto y = [&](double vertical) { return kMargin + (up - vertical) * kScale; };
   std::string s = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" font-size=\"12\">\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" font-family=\"sans-serif\" "
+      "font-size=\"12\">\n"
       "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#fff\"/>\n<title>Glide polar at {2:.0f} m</title>\n",
       width, height, depth_m);
   const auto line = [&](double x1, double y1, double x2, double y2, const char* colour) {
-    s += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1, y1, x2, y2, colour);
+    s += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\"/>\n", x1, y1, x2, y2,
+                     colour);
   };
   const auto text = [&](double at_x, double at_y, const char* anchor, const std::string& words) {
     s += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", at_x, at_y, anchor, words);
@@ -79,17 +81,21 @@ std::string svg(const Curves& curves, double depth_m) {
     text(x(0) - 6, y(k * 0.1) + 4, "end", fmt::format("{:.1f}", k * 0.1));
   }
   text(x(0.5 * right), y(-down) + 38, "middle", "horizontal speed, m/s");
-  text(x(0), y(up) - 30, "start", fmt::format("vertical speed, m/s (climbs above), at {:.0f} m; pump volumes in cm³; dots: every 10° of pitch", depth_m));
+  text(x(0), y(up) - 30, "start",
+       fmt::format("vertical speed, m/s (climbs above), at {:.0f} m; pump volumes in cm³; dots: every 10° of pitch",
+                   depth_m));
   for (const auto& curve : curves) {
     if (curve.empty()) continue;
-    s += fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"", curve.front().pumped_m3 > 0 ? "#1668a8" : "#b5471b");
+    s += fmt::format("<polyline fill=\"none\" stroke=\"{}\" points=\"",
+                     curve.front().pumped_m3 > 0 ? "#1668a8" : "#b5471b");
     for (const auto& p : curve) s += fmt::format("{:.1f},{:.1f} ", x(p.horizontal.si()), y(p.vertical.si()));
     s += "\"/>\n";
     for (const auto& p : curve)
       if (std::lround(in_degrees(p.pitch)) % 10 == 0)
         s += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>\n", x(p.horizontal.si()), y(p.vertical.si()));
     const auto& best = *fastest_of(curve);
-    text(x(best.horizontal.si()) + 5, y(best.vertical.si()) + 4, "start", fmt::format("{:+.0f}", best.pumped_m3 / kCubicCentimetre));
+    text(x(best.horizontal.si()) + 5, y(best.vertical.si()) + 4, "start",
+         fmt::format("{:+.0f}", best.pumped_m3 / kCubicCentimetre));
   }
   return s + "</svg>\n";
 }
@@ -130,7 +136,8 @@ Expected<Body, int> body_of(const PolarOptions& options, world::World& world, st
     return unexpected(mission.error().code);
   }
   if (!mission->flight_model)
-    err << "note: " << options.mission << " has no vehicle.force_balance: this is the polar of the section's defaults\n";
+    err << "note: " << options.mission
+        << " has no vehicle.force_balance: this is the polar of the section's defaults\n";
   return Body{mission->flight_model.value_or(vehicle::FlightModel{}), mission->climb_to, mission->dive_depth};
 }
 
@@ -153,7 +160,8 @@ int run_polar(const PolarOptions& options, world::World& world, std::ostream& ou
     return 1;
   }
   const auto curves = vehicle::glide_polar(model.hull, water, Metres{options.depth_m}, pump_volumes());
-  for (const auto& [file, bytes] : {std::pair{options.csv, csv(curves)}, std::pair{options.svg, svg(curves, options.depth_m)}})
+  for (const auto& [file, bytes] :
+       {std::pair{options.csv, csv(curves)}, std::pair{options.svg, svg(curves, options.depth_m)}})
     if (!file.empty())
       if (const auto why = write_new_file(file, bytes, world.files); !why.empty()) {
         err << why << "\n";
@@ -164,13 +172,16 @@ int run_polar(const PolarOptions& options, world::World& world, std::ostream& ou
     return 0;
   }
   out << fmt::format(
-      "Over the yo between {:.0f} and {:.0f} m: {:.3f} m/s horizontally, path {:.1f} degrees below the horizon, {:.0f} s down and {:.0f} s "
-      "up.\nAt {:.0f} m, by pump volume, the pitch that goes forward fastest:\n\n  pump cm3   pitch   horizontal m/s   vertical m/s\n",
-      climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle), yo->down.count(), yo->up.count(), options.depth_m);
+      "Over the yo between {:.0f} and {:.0f} m: {:.3f} m/s horizontally, path {:.1f} degrees below the horizon, {:.0f} "
+      "s down and {:.0f} s "
+      "up.\nAt {:.0f} m, by pump volume, the pitch that goes forward fastest:\n\n  pump cm3   pitch   horizontal m/s   "
+      "vertical m/s\n",
+      climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle), yo->down.count(),
+      yo->up.count(), options.depth_m);
   for (const auto& curve : curves)
     if (const auto* best = fastest_of(curve))
-      out << fmt::format("  {:+8.0f} {:5.0f}°   {:14.3f}   {:+12.3f}\n", best->pumped_m3 / kCubicCentimetre, in_degrees(best->pitch),
-                         best->horizontal.si(), best->vertical.si());
+      out << fmt::format("  {:+8.0f} {:5.0f}°   {:14.3f}   {:+12.3f}\n", best->pumped_m3 / kCubicCentimetre,
+                         in_degrees(best->pitch), best->horizontal.si(), best->vertical.si());
   return 0;
 }
 

@@ -9,9 +9,9 @@ namespace glidehelm::cli {
 
 /// `glidehelm polar [MISSION] [--depth M] [--csv FILE] [--svg FILE] [--json]`.
 struct PolarOptions {
-  std::string mission;    ///< whose vehicle.force_balance; empty: the defaults of that section
-  double depth_m{50};     ///< of the polar
-  std::string csv, svg;   ///< new files; empty: none
+  std::string mission;   ///< whose vehicle.force_balance; empty: the defaults of that section
+  double depth_m{50};    ///< of the polar
+  std::string csv, svg;  ///< new files; empty: none
   bool json{};
 };
 

@@ -84,9 +84,9 @@ Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& unit
   return out;
 }
 
-Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& in,
-                                const Component& component, float* values, std::size_t step_of_values) {
-  std::size_t outside = 0;
+Result<Told> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& in,
+                         const Component& component, float* values, std::size_t step_of_values) {
+  Told told;
   const bool ranged = component.has_valid_range();
   const std::size_t rank = variable.dimensions.size();
   const auto [low_lat, high_lat] = std::minmax_element(in.lats.source.begin(), in.lats.source.end());
@@ -113,13 +113,18 @@ Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable
           for (std::size_t i = run.first; i <= run.last; ++i) {
             const double number = row[(in.lons.source[i] - run.source) * lon_stride];
             const double value = component(number);
-            if (ranged && value == value && component.outside_valid(number)) ++outside;
+            if (value == value) {
+              told.nothing = false;
+              if (ranged && component.outside_valid(number)) ++told.outside_valid;
+            } else if (told.nothing) {
+              told.marks[static_cast<std::size_t>(component.mark_of(number))] = true;
+            }
             to[step_of_values * i] = static_cast<float>(value);
           }
         }
     }
   }
-  return outside;
+  return told;
 }
 
 }  // namespace glidehelm::ingest

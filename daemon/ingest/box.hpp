@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -27,9 +28,16 @@ struct Box {
 Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& units, const ReadOptions& options,
                      std::vector<std::string>& warnings);
 
+/// What reading a variable showed beside its values.
+struct Told {
+  std::size_t outside_valid{};  ///< values outside the valid range; they are kept
+  bool nothing{true};           ///< no value at all
+  std::array<bool, 3> marks{};  ///< by Missing::Mark: met before the first value
+};
+
 /// Reads a variable on `axes` over the box into `values[0]`, `values[step]`, `values[2·step]`, …, ordered [time][depth]
-/// [latitude][longitude], in the unit of `component`. Returns how many values lie outside the valid range (they are kept).
-Result<std::size_t> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& box,
-                                const Component& component, float* values, std::size_t step);
+/// [latitude][longitude], in the unit of `component`.
+Result<Told> read_values(const NetcdfFile& file, const Variable& variable, const Axes& axes, const Box& box,
+                         const Component& component, float* values, std::size_t step);
 
 }  // namespace glidehelm::ingest

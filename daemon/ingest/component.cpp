@@ -56,7 +56,15 @@ Missing::Missing(const Variable& variable) : floating_{is_floating(variable.type
   for (const char* name : kFillNames)
     for (const double value : numbers_of(variable, name)) marks_.push_back(variable.as_meant(value));
   if (marks_.empty()) marks_.push_back(default_fill(variable.type));
+  fill_values_ = marks_.size();
   for (const double value : numbers_of(variable, "missing_value")) marks_.push_back(variable.as_meant(value));
+}
+
+Missing::Mark Missing::mark_of(double stored) const {
+  if (!std::isfinite(stored)) return Mark::not_a_number;
+  const auto fill = marks_.begin() + static_cast<std::ptrdiff_t>(fill_values_);
+  return std::any_of(marks_.begin(), fill, [&](double mark) { return is(stored, mark); }) ? Mark::fill_value
+                                                                                          : Mark::missing_value;
 }
 
 Result<Component> Component::of(const Variable& variable, const Units& units, const std::string& target,

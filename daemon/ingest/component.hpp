@@ -24,16 +24,21 @@ class Missing {
   explicit Missing(const Variable& variable);
   [[nodiscard]] bool operator()(double stored) const {
     if (!std::isfinite(stored)) return true;
-    return std::any_of(marks_.begin(), marks_.end(),
-                       [&](double mark) { return floating_ ? same(stored, mark) : stored == mark; });
+    return std::any_of(marks_.begin(), marks_.end(), [&](double mark) { return is(stored, mark); });
   }
+  /// How a number says that it is missing.
+  enum class Mark { not_a_number, fill_value, missing_value };
+  /// Of a number that is missing.
+  [[nodiscard]] Mark mark_of(double stored) const;
   /// True when a number is a floating mark, to its precision.
   static bool same(double value, double mark) {
     return value == mark || std::abs(value - mark) <= 1e-6 * std::abs(mark);
   }
 
  private:
-  std::vector<double> marks_;
+  [[nodiscard]] bool is(double stored, double mark) const { return floating_ ? same(stored, mark) : stored == mark; }
+  std::vector<double> marks_;  ///< the fill values first
+  std::size_t fill_values_{};
   bool floating_{};
 };
 
@@ -61,6 +66,10 @@ class Component {
     for (const double mark : missing_values_)
       if (Missing::same(value, mark)) return kMissing;
     return to_si_.slope == 1 && to_si_.intercept == 0 ? value : to_si_(value);
+  }
+  /// Of a number for which the value is NaN.
+  [[nodiscard]] Missing::Mark mark_of(double stored) const {
+    return missing_(stored) ? missing_.mark_of(stored) : Missing::Mark::missing_value;
   }
   /// True when the variable names a valid range.
   [[nodiscard]] bool has_valid_range() const { return stored_low_ || stored_high_ || value_low_ || value_high_; }

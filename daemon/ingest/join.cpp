@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <deque>
+#include <iterator>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "core/base/utc.hpp"
@@ -44,8 +47,8 @@ Result<Done> same_grid(const Part& first, const Part& other) {
   return Done{};
 }
 
-/// Indices of the parts, newest first.
-std::vector<std::size_t> newest_first(const std::vector<Part>& parts) {
+/// Indices of the parts, oldest first.
+std::vector<std::size_t> oldest_first(const std::vector<Part>& parts) {
   const bool referenced =
       std::all_of(parts.begin(), parts.end(), [](const Part& p) { return !std::isnan(p.grid.facts.reference_s); });
   std::vector<std::size_t> order(parts.size());
@@ -55,37 +58,94 @@ std::vector<std::size_t> newest_first(const std::vector<Part>& parts) {
       const auto& grid = parts[p].grid;
       return std::tuple{referenced ? grid.facts.reference_s : 0.0, grid.axes.times_s.front(), p};
     };
-    return key(a) > key(b);
+    return key(a) < key(b);
   });
   return order;
 }
 
-struct Chosen {
+/// One time of the joined grid: where its numbers stand, and the part and time whose marks of filled nodes count.
+struct Slice {
   double time;
+  const float* values;
   std::size_t part, index;
 };
+using Slices = std::vector<Slice>;  // by time, ascending
 
-std::vector<Chosen> choose_times(const std::vector<Part>& parts) {
-  const auto order = newest_first(parts);
-  std::vector<Chosen> chosen;
-  for (std::size_t rank = 0; rank < order.size(); ++rank) {
-    const auto& mine = parts[order[rank]].grid;
-    for (std::size_t k = 0; k < mine.axes.times_s.size(); ++k) {
-      const double time = mine.axes.times_s[k];
-      const bool covered =
-          std::any_of(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(rank), [&](std::size_t p) {
-            const auto& newer = parts[p].grid;
-            const auto& times = newer.axes.times_s;
-            if (newer.facts.reference_s == mine.facts.reference_s)  // one cycle; false when either is not named
-              return std::binary_search(times.begin(), times.end(), time);
-            return time >= times.front() && time <= times.back();
-          });
-      if (!covered) chosen.push_back({time, order[rank], k});
-    }
+/// Cycles laid over each other, the oldest first.
+class Joint {
+ public:
+  explicit Joint(std::size_t plane) : plane_{plane} {}
+  /// Puts a part of the newest cycle so far (`same_cycle`) or of the next newer one on top.
+  void add(const Part& part, std::size_t number, bool same_cycle) {
+    if (!same_cycle) lay_over();
+    Slices more;
+    for (std::size_t k = 0; k < part.grid.axes.times_s.size(); ++k)
+      more.push_back({part.grid.axes.times_s[k], part.grid.values.data() + plane_ * k, number, k});
+    // Of equal times of one cycle the later part's counts.
+    std::erase_if(top_, [&](const Slice& old) {
+      return std::any_of(more.begin(), more.end(), [&](const Slice& s) { return s.time == old.time; });
+    });
+    top_.insert(top_.end(), more.begin(), more.end());
+    std::sort(top_.begin(), top_.end(), earlier);
   }
-  std::sort(chosen.begin(), chosen.end(), [](const Chosen& a, const Chosen& b) { return a.time < b.time; });
-  return chosen;
-}
+  const Slices& finish() {
+    lay_over();
+    return under_;
+  }
+
+ private:
+  static bool earlier(const Slice& a, const Slice& b) { return a.time < b.time; }
+
+  /// The top cycle takes over from what lies under it, and gives back to it where that goes on for longer.
+  void lay_over() {
+    if (top_.empty()) return;
+    if (!under_.empty()) {
+      const double first = top_.front().time, last = top_.back().time;
+      const double overlap = std::min(last, under_.back().time) - std::max(first, under_.front().time);
+      const double length = std::min(kJoin_s, overlap);
+      for (auto& slice : top_) {
+        double weight = 1;
+        if (length > 0 && under_.front().time < first) weight *= smooth((slice.time - first) / length);
+        if (length > 0 && under_.back().time > last) weight *= smooth((last - slice.time) / length);
+        if (weight < 1) slice.values = mixed(slice, weight);
+      }
+      Slices all;
+      std::copy_if(under_.begin(), under_.end(), std::back_inserter(all),
+                   [&](const Slice& s) { return s.time < first || s.time > last; });
+      all.insert(all.end(), top_.begin(), top_.end());
+      std::sort(all.begin(), all.end(), earlier);
+      top_ = std::move(all);
+    }
+    under_ = std::move(top_);
+    top_.clear();
+  }
+
+  static double smooth(double x) {
+    x = std::clamp(x, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+  }
+
+  /// A slice with `weight`, the rest from what lies under it at the same time. Where one of the two has no value the slice's own stays.
+  const float* mixed(const Slice& slice, double weight) {
+    const auto next = std::lower_bound(under_.begin(), under_.end(), slice, earlier);
+    if (next == under_.end() || (next == under_.begin() && next->time != slice.time)) return slice.values;
+    const auto before = next->time == slice.time ? next : next - 1;
+    const double way = before == next ? 0 : (slice.time - before->time) / (next->time - before->time);
+    auto& values = made_.emplace_back(plane_);
+    for (std::size_t i = 0; i < plane_; ++i) {
+      const double old = way > 0 ? before->values[i] + way * (static_cast<double>(next->values[i]) - before->values[i])
+                                 : before->values[i];
+      const double own = slice.values[i], both = old + weight * (own - old);
+      values[i] = std::isnan(both) || own == old ? slice.values[i] : static_cast<float>(both);
+    }
+    return values.data();
+  }
+
+  static constexpr double kJoin_s = 6 * 3600.0;
+  std::size_t plane_;  ///< floats of one time
+  Slices under_, top_;
+  std::deque<std::vector<float>> made_;
+};
 
 /// Beyond rounding by any packing: two files of one run cannot differ so.
 constexpr double kContradiction = 0.05;  // m/s
@@ -143,9 +203,8 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
     for (std::size_t q = p + 1; q < parts.size(); ++q)
       if (auto what = contradiction(parts[p], parts[q]); !what.empty()) return fault(std::move(what));
 
-  const auto chosen = choose_times(parts);
-  const auto& newest = parts[newest_first(parts).front()].grid;
-  ocean::Grid grid{parts[0].grid.axes, newest.facts, {}};
+  const auto order = oldest_first(parts);
+  ocean::Grid grid{parts[0].grid.axes, parts[order.back()].grid.facts, {}};
   grid.facts.warnings = gathered_warnings(parts);
   grid.facts.sources.clear();
   for (const auto& part : parts)
@@ -154,15 +213,20 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
         grid.facts.sources.push_back(source);
   grid.axes.times_s.clear();
   const std::size_t plane = 2 * grid.axes.depths_m.size() * grid.axes.lats_deg.size() * grid.axes.lons_deg.size();
+  Joint joint{plane};
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const auto& part = parts[order[k]];  // unnamed reference times are equal to none
+    joint.add(part, order[k], k > 0 && part.grid.facts.reference_s == parts[order[k - 1]].grid.facts.reference_s);
+  }
+  const auto& chosen = joint.finish();
   grid.values.reserve(plane * chosen.size());
   std::vector<bool> filled(plane / 2 * chosen.size(), false);
-  for (const auto& time : chosen) {
-    grid.axes.times_s.push_back(time.time);
-    const auto from = parts[time.part].grid.values.begin() + static_cast<std::ptrdiff_t>(plane * time.index);
-    grid.values.insert(grid.values.end(), from, from + static_cast<std::ptrdiff_t>(plane));
+  for (const auto& slice : chosen) {
+    grid.axes.times_s.push_back(slice.time);
+    grid.values.insert(grid.values.end(), slice.values, slice.values + plane);
     // The plane's filled nodes, at their new place.
-    const std::size_t first = plane / 2 * time.index, size = plane / 2;
-    for (const auto& run : parts[time.part].grid.filled) {
+    const std::size_t first = plane / 2 * slice.index, size = plane / 2;
+    for (const auto& run : parts[slice.part].grid.filled) {
       const auto begin = std::max<std::uint64_t>(run.first, first);
       const auto end = std::min<std::uint64_t>(run.first + run.length, first + size);
       for (auto n = begin; n < end; ++n) filled[n - first + (grid.axes.times_s.size() - 1) * size] = true;

@@ -465,6 +465,8 @@ Result<Done> check_size(const ocean::GridAxes& axes, double allowed) {
 Result<Done> settle_land(Job& job, std::vector<std::string>& warnings) {
   if (!job.wet.wet.empty()) {
     job.land = "land by " + job.wet.from.variable->name;
+    if (std::find(job.wet.wet.begin(), job.wet.wet.end(), 1) == job.wet.wet.end())
+      return fault("every point of the grid is land by " + job.wet.from.variable->name + ": there is no water to read");
     return Done{};
   }
   job.land = "land where values are missing";

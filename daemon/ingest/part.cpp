@@ -48,7 +48,8 @@ struct Reading {
   const ReadOptions& options;
   Part& part;
   const std::vector<GridFile>& grids;
-  std::vector<std::string> outside;  ///< "uo 12 (-5 to 5)": values beyond the valid range
+  std::vector<std::string> outside{};  ///< "uo 12 (-5 to 5)": values beyond the valid range
+  std::vector<std::string> empty{};    ///< variables without a value, and what stands there instead
 
   std::vector<std::string>& warnings() const { return part.grid.facts.warnings; }
 };
@@ -62,17 +63,28 @@ Result<Box> prepare(const Reading& reading, const Axes& axes) {
   return box;
 }
 
+/// What stands everywhere in a variable without values, and what that means to the one who wanted them.
+std::string instead_of_values(const Told& told) {
+  const auto has = [&](Missing::Mark mark) { return told.marks[static_cast<std::size_t>(mark)]; };
+  if (has(Missing::Mark::missing_value))
+    return "marked as missing everywhere: to its producer all of this area is land; is it the right area?";
+  if (has(Missing::Mark::fill_value))
+    return "the fill value everywhere: the file was made and its values were never written, or are still to come";
+  return "NaN everywhere: the model, or what was done with its output, computed nothing; ask its producer";
+}
+
 /// Reads one variable into the part's east (0) or north (1).
 Result<Done> read_into(Reading& reading, const Variable& variable, const std::string& unit, const Axes& axes,
                        const Box& box, std::size_t side) {
   const auto component = Component::of(variable, reading.units, unit, reading.warnings());
   if (!component) return unexpected(component.error());
-  const auto outside =
+  const auto told =
       read_values(reading.file, variable, axes, box, *component, reading.part.grid.values.data() + side, 2);
-  if (!outside) return unexpected(outside.error());
-  if (*outside == 0) return Done{};
-  const std::string text = std::to_string(*outside) + " values of " + variable.name + " lie outside its valid range " +
-                           component->valid_text();
+  if (!told) return unexpected(told.error());
+  if (told->nothing) reading.empty.push_back(variable.name + " is " + instead_of_values(*told));
+  if (told->outside_valid == 0) return Done{};
+  const std::string text = std::to_string(told->outside_valid) + " values of " + variable.name +
+                           " lie outside its valid range " + component->valid_text();
   reading.warnings().push_back(text + " and are kept");
   reading.outside.push_back(text);
   return Done{};
@@ -96,6 +108,7 @@ Result<Done> finish(const Reading& reading) {
   auto done = make_plausible(reading.part.grid, reading.warnings());
   if (done) return done;
   std::string what = done.error().what;
+  for (const auto& text : reading.empty) what += "; " + text;
   for (const auto& text : reading.outside)
     what += "; " + text + ", which is no mask (if they mark land, the file must say so in _FillValue)";
   return fault(std::move(what));

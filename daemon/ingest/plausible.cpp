@@ -1,9 +1,11 @@
 #include "daemon/ingest/plausible.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 
 #include "core/base/utc.hpp"
 
@@ -109,7 +111,66 @@ Result<Done> check_speeds(const ocean::Grid& grid, std::vector<std::string>& war
   return Done{};
 }
 
+/// The rows or columns of one component at one time and level.
+struct Lines {
+  std::size_t count, across;          ///< how many, and how many nodes each has
+  std::size_t to_next, to_neighbour;  ///< steps in nodes from line to line, along a line
+};
+
+/// How many nodes of a line are zero here and are something else at the other time; none when the line has a number here.
+std::optional<std::size_t> zeros_of(const float* here, const float* other, const Lines& lines, std::size_t line) {
+  std::size_t lost = 0;
+  for (std::size_t k = 0; k < lines.across; ++k) {
+    const std::size_t at = 2 * (line * lines.to_next + k * lines.to_neighbour);
+    if (here[at] != 0 && !std::isnan(here[at])) return std::nullopt;
+    if (here[at] == 0 && other[at] != 0 && !std::isnan(other[at])) ++lost;
+  }
+  return lost;
+}
+
+/// How many lines at one end (the last ones, or the first) are zero, with enough lost nodes in them; 0 when not.
+std::size_t zero_lines(const float* here, const float* other, const Lines& lines, bool last) {
+  constexpr std::size_t kLostAtLeast = 16;
+  std::size_t lost = 0, found = 0;
+  for (; found < lines.count; ++found) {
+    const auto more = zeros_of(here, other, lines, last ? lines.count - 1 - found : found);
+    if (!more) break;
+    lost += *more;
+  }
+  return lost >= kLostAtLeast ? found : 0;
+}
+
 }  // namespace
+
+std::string unwritten_end(const ocean::Grid& grid) {
+  const auto& axes = grid.axes;
+  const std::size_t times = axes.times_s.size(), depths = axes.depths_m.size(), rows = axes.lats_deg.size(),
+                    columns = axes.lons_deg.size(), level = rows * columns;
+  const std::array<Lines, 2> ways{Lines{rows, columns, columns, 1}, Lines{columns, rows, 1, columns}};
+  for (std::size_t t = 0; t < times; ++t)
+    for (std::size_t z = 0; z < depths; ++z)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const float* const here = grid.values.data() + 2 * (t * depths + z) * level + side;
+        for (const std::size_t neighbour : {t - 1, t + 1}) {  // t - 1 of the first time wraps, and is none
+          if (neighbour >= times) continue;
+          const float* const other = grid.values.data() + 2 * (neighbour * depths + z) * level + side;
+          for (std::size_t way = 0; way < 2; ++way)
+            for (const bool last : {true, false})
+              if (const auto found = zero_lines(here, other, ways[way], last); found > 0) {
+                const std::string where = way == 0 ? (last ? "northernmost" : "southernmost")
+                                          : last   ? "easternmost"
+                                                   : "westernmost";
+                return "the " + std::string{side == 0 ? "eastward" : "northward"} + " current of the " +
+                       std::to_string(found) + " " + where + " of " + std::to_string(ways[way].count) +
+                       (way == 0 ? " rows" : " columns") +
+                       (axes.has_depth ? text_of(" at %.1f m", axes.depths_m[z], 0) : "") + " is exactly zero at " +
+                       utc_text(instant_at(axes.times_s[t])) + ", and is not at " +
+                       utc_text(instant_at(axes.times_s[neighbour])) + ": its writer probably ended there";
+              }
+        }
+      }
+  return {};
+}
 
 std::size_t zeros_to_land(ocean::Grid& grid) {
   const auto& axes = grid.axes;
@@ -154,6 +215,7 @@ Result<Done> make_plausible(ocean::Grid& grid, std::vector<std::string>& warning
     return fault("every value at " + seen.zero_times.front() + " is exactly zero (" +
                  std::to_string(seen.zero_times.size()) + " of " + std::to_string(axes.times_s.size()) +
                  " times): the file is probably still being written");
+  if (auto what = unwritten_end(grid); !what.empty()) return fault(std::move(what));
   if (const auto land = zeros_to_land(grid); land > 0)
     warnings.push_back(std::to_string(land) + " of " + std::to_string(axes.nodes() / axes.times_s.size()) +
                        " nodes stand exactly still at every time: taken as land");

@@ -15,7 +15,8 @@ auto read(const std::string& more) { return read_mission(test::six_lines(more), 
 }  // namespace
 
 TEST_CASE("with a force balance the speed and the glide angle of a mission are those of the body") {
-  const auto mission = read("vehicle: {climb_to_m: 10, dive_depth_m: 150, force_balance: {pitch_down_deg: 24, pumped_up_cm3: 200}}\n");
+  const auto mission =
+      read("vehicle: {climb_to_m: 10, dive_depth_m: 150, force_balance: {pitch_down_deg: 24, pumped_up_cm3: 200}}\n");
   REQUIRE(mission);
   REQUIRE(mission->flight_model);
   vehicle::FlightModel model;
@@ -23,7 +24,8 @@ TEST_CASE("with a force balance the speed and the glide angle of a mission are t
   model.trim.pumped_up_m3 = 200e-6;
   CHECK(mission->flight_model->trim.pitch_down.si() == Approx(model.trim.pitch_down.si()));
   CHECK(mission->flight_model->trim.pumped_up_m3 == Approx(200e-6));
-  const auto means = yo_means(mission->flight_model->hull, mission->flight_model->trim, model.column(), Metres{10}, Metres{150});
+  const auto means =
+      yo_means(mission->flight_model->hull, mission->flight_model->trim, model.column(), Metres{10}, Metres{150});
   REQUIRE(means);
   CHECK(mission->horizontal_speed == means->horizontal);
   CHECK(mission->glide_angle == means->glide_angle);
@@ -31,7 +33,8 @@ TEST_CASE("with a force balance the speed and the glide angle of a mission are t
 
 TEST_CASE("water is read by layers, and half cycles take as long as the body's speed says") {
   const auto mission = read(
-      "vehicle: {force_balance: {water: [{depth_m: 0, temperature_c: 20}, {depth_m: 300, temperature_c: 8, salinity: 34.5}]}}\n"
+      "vehicle: {force_balance: {water: [{depth_m: 0, temperature_c: 20}, {depth_m: 300, temperature_c: 8, salinity: "
+      "34.5}]}}\n"
       "schedule: {half_cycles: 6}\n");
   REQUIRE(mission);
   const auto& water = mission->flight_model->water;
@@ -44,10 +47,12 @@ TEST_CASE("water is read by layers, and half cycles take as long as the body's s
 TEST_CASE("what is wrong with a force balance is said at its place") {
   const auto errors = [](const std::string& more) { return test::errors_of(read(more)); };
   CHECK(errors("vehicle: {horizontal_speed_m_per_s: 0.3, force_balance: {}}\n") ==
-        std::vector<std::string>{
-            "7:37 vehicle.horizontal_speed_m_per_s: both horizontal_speed_m_per_s and force_balance; allowed: one of the two"});
+        std::vector<std::string>{"7:37 vehicle.horizontal_speed_m_per_s: both horizontal_speed_m_per_s and "
+                                 "force_balance; allowed: one of the two"});
   CHECK(errors("vehicle: {force_balance: {mass_kg: 71.85, neutral_at_m: 50}}\n").size() == 1);
-  CHECK(errors("vehicle: {force_balance: {water: [{depth_m: 10, temperature_c: 4}, {depth_m: 10, temperature_c: 3}]}}\n").size() == 1);
+  CHECK(
+      errors("vehicle: {force_balance: {water: [{depth_m: 10, temperature_c: 4}, {depth_m: 10, temperature_c: 3}]}}\n")
+          .size() == 1);
   const auto heavy = errors("vehicle: {force_balance: {mass_kg: 75}}\n");  // 70 l of sea water weigh 72 kg
   REQUIRE(heavy.size() == 1);
   CHECK(heavy.front().find("vehicle.force_balance: the glider does not climb at") != std::string::npos);
@@ -55,8 +60,9 @@ TEST_CASE("what is wrong with a force balance is said at its place") {
 }
 
 TEST_CASE("what is in force of a force balance reads back to the same mission") {
-  for (const std::string more : {"vehicle: {motion: yo-yo, force_balance: {drag: 0.12, water: [{depth_m: 0, temperature_c: 20}]}}\n",
-                                 "vehicle: {force_balance: {}}\n", "vehicle: {motion: yo-yo}\n"}) {
+  for (const std::string more :
+       {"vehicle: {motion: yo-yo, force_balance: {drag: 0.12, water: [{depth_m: 0, temperature_c: 20}]}}\n",
+        "vehicle: {force_balance: {}}\n", "vehicle: {motion: yo-yo}\n"}) {
     const auto file = read_mission_file(test::six_lines(more), "m.yaml", test::no_files());
     REQUIRE(file);
     const auto again = read_mission(file->effective, "m.yaml", test::no_files());

@@ -290,7 +290,7 @@ std::vector<Row> numbers_that_are_no_sea() {
          post.put_cdl("newer.nc",
                       cdl.substr(0, at) + "u = " + repeated("NaNf", 48) + " ; v = " + repeated("NaNf", 48) + " ; }");
        },
-       "every value is missing"},
+       "u is NaN everywhere"},
       {"all fill values",
        [](Post& post) {
          const auto cdl = post.newer();
@@ -298,7 +298,7 @@ std::vector<Row> numbers_that_are_no_sea() {
          post.put_cdl("newer.nc",
                       cdl.substr(0, at) + "u = " + repeated("-99", 48) + " ; v = " + repeated("-99", 48) + " ; }");
        },
-       "every value is missing"},
+       "u is the fill value everywhere"},
       {"land everywhere",
        [](Post& post) {
          const auto cdl = post.newer({{"u:_FillValue = -99.f", "u:missing_value = 1.e20f"}});
@@ -306,7 +306,7 @@ std::vector<Row> numbers_that_are_no_sea() {
          post.put_cdl("newer.nc",
                       cdl.substr(0, at) + "u = " + repeated("1.e20", 48) + " ; v = " + repeated("0", 48) + " ; }");
        },
-       "every value is missing"},
+       "u is marked as missing everywhere: to its producer all of this area is land"},
       {"all zero",
        [](Post& post) {
          const auto cdl = post.newer();

@@ -59,11 +59,13 @@ TEST_CASE("the angle of attack solves the balance of lift and drag, and the pitc
     const double a = alpha->si();
     CHECK(a > 0);
     // 2.40, to the rounding of its terms (about 0.1 each).
-    CHECK(hull.lift_per_rad * a * std::tan(degrees(pitch).si() + a) == Approx(hull.drag + hull.induced_drag_per_rad2 * a * a).margin(1e-11));
+    CHECK(hull.lift_per_rad * a * std::tan(degrees(pitch).si() + a) ==
+          Approx(hull.drag + hull.induced_drag_per_rad2 * a * a).margin(1e-11));
     CHECK(in_degrees(pitch_of(hull, *alpha)) == Approx(pitch).margin(1e-9));
   }
   // So steep that tan(θ + α) is nearly 1/(π/2 − θ − α): α is nearly C_D0·(π/2 − θ)/a, smaller than a tenth of a degree at 85°.
-  CHECK(angle_of_attack(hull, degrees(85))->si() == Approx(hull.drag * degrees(5).si() / hull.lift_per_rad).epsilon(0.03));
+  CHECK(angle_of_attack(hull, degrees(85))->si() ==
+        Approx(hull.drag * degrees(5).si() / hull.lift_per_rad).epsilon(0.03));
 }
 
 TEST_CASE("a pitch too flat for the wings is no flight") {
@@ -130,7 +132,8 @@ TEST_CASE("the mean over a yo in even water is the glide itself") {
   hull.neutral_at = Metres{50};
   const auto means = yo_means(hull, Trim{}, even_water(), Metres{45}, Metres{55});
   REQUIRE(means);
-  const auto glide = steady_glide(hull, degrees(26), net_buoyancy(hull, even_water(), Metres{50}, 230e-6), even_water().density(Metres{50}));
+  const auto glide = steady_glide(hull, degrees(26), net_buoyancy(hull, even_water(), Metres{50}, 230e-6),
+                                  even_water().density(Metres{50}));
   CHECK(means->horizontal.si() == Approx(glide->horizontal.si()).epsilon(4e-3));
   CHECK(means->glide_angle.si() == Approx(glide->glide_angle.si()).epsilon(1e-9));
   CHECK(means->down.count() == Approx(10 / std::abs(glide->vertical.si())).epsilon(8e-3));
@@ -147,7 +150,8 @@ TEST_CASE("a glider that is too light to sink says where and by how much") {
   CHECK(means.error().find("g too light") != std::string::npos);
   trim = {};
   trim.pitch_up = degrees(0.5);
-  CHECK(yo_means(Hull{}, trim, WaterColumn::climatological(), Metres{0}, Metres{200}).error().find("too flat") != std::string::npos);
+  CHECK(yo_means(Hull{}, trim, WaterColumn::climatological(), Metres{0}, Metres{200}).error().find("too flat") !=
+        std::string::npos);
 }
 
 TEST_CASE("a float with its neutral volume neither sinks nor climbs") {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/chart/chart.hpp"
-#include "core/planning/registry.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/registry.hpp"
 #include "core/vehicle/motion.hpp"
 #include "core/vehicle/yo.hpp"
 #include "tests/support/fields.hpp"
@@ -39,7 +39,8 @@ TEST_CASE("the depth follows from the clock, stint after stint") {
   for (int k = 0; k < 4; ++k) {
     const double dive = kFix + schedule.dive_time(k).count(), length = schedule.stint_length(k).count();
     for (double s = 0; s <= length; s += 97)
-      CHECK(yo.depth(dive + s) == Approx(yo_depth(glider, s, length)).margin(1e-4));  // instants of 1.7e9 s are kept to 2.4e-7 s
+      CHECK(yo.depth(dive + s) ==
+            Approx(yo_depth(glider, s, length)).margin(1e-4));  // instants of 1.7e9 s are kept to 2.4e-7 s
     CHECK(yo.depth(dive + length + 450) == Approx(0).margin(1e-4));
   }
 }
@@ -67,7 +68,8 @@ TEST_CASE("a stint in sheared water is carried by the mean over its yo-yo") {
 TEST_CASE("a current that is the same at all depths is left as it is") {
   const test::Uniform even{0.1, -0.2};
   const YoField yo{even, {}, {}, kFix};
-  for (const double t : {0.0, 1000.0, 9000.0, 123456.0}) CHECK(*yo.sample(geo_point(1, 2), Depth{}, kFix + t) == *even.sample(geo_point(1, 2), Depth{}, 0));
+  for (const double t : {0.0, 1000.0, 9000.0, 123456.0})
+    CHECK(*yo.sample(geo_point(1, 2), Depth{}, kFix + t) == *even.sample(geo_point(1, 2), Depth{}, 0));
 }
 
 TEST_CASE("a planner in the yo-yo arrives when its list flown in all depths does") {

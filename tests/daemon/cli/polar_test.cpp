@@ -65,7 +65,8 @@ TEST_CASE("the polar of a mission is that of its body; without one a note says s
   vehicle::Hull hull;
   hull.drag = 0.2;
   CHECK(j["yo"]["horizontal_speed_m_per_s"].get<double>() ==
-        Approx(vehicle::yo_means(hull, {}, vehicle::WaterColumn::climatological(), Metres{20}, Metres{200})->horizontal.si()));
+        Approx(vehicle::yo_means(hull, {}, vehicle::WaterColumn::climatological(), Metres{20}, Metres{200})
+                   ->horizontal.si()));
   CHECK(j["best"].size() == 12);
 
   std::ofstream{path} << test::six_lines("");

@@ -310,7 +310,10 @@ TEST_CASE("a sea of zeros, of nothing, or faster than a sea is refused") {
   const std::string head = kPlain.substr(0, kPlain.find("  u = 0.1"));
   CHECK(refusal(head + "u = 0,0,0,0,0,0,0,0,0,0,0,0 ; v = 0,0,0,_,0,0,0,0,0,0,0,0 ; }") ==
         "every value is exactly zero: no sea is that still, the file was probably never filled\n");
-  CHECK(refusal(head + "u = _,_,_,_,_,_,_,_,_,_,_,_ ; v = 1,1,1,1,1,1,1,1,1,1,1,1 ; }") == "every value is missing\n");
+  CHECK(refusal(head + "u = _,_,_,_,_,_,_,_,_,_,_,_ ; v = 1,1,1,1,1,1,1,1,1,1,1,1 ; }") ==
+        "every value is missing; u is the fill value everywhere: the file was made and its values were never written, "
+        "or are still to "
+        "come\n");
   CHECK(
       refusal(head + "u = 1,1,1,1,1,1,0,0,0,0,0,0 ; v = 1,1,1,1,1,1,0,0,0,0,0,_ ; }") ==
       "every value at 2024-01-01T12:00:00Z is exactly zero (1 of 2 times): the file is probably still being written\n");

@@ -42,17 +42,58 @@ TEST_CASE("files that follow each other are joined in time, whatever their order
 }
 
 TEST_CASE("the newest cycle wins where cycles overlap, by its reference time") {
-  // b is the newer run although it begins later only by its named reference time; nothing of a stays between its ends.
+  // b is the newer run although it begins later only by its named reference time; of a no time stays between its ends, where b begins
+  // and ends with a's current.
   CHECK(story(join({part("b", {0, 6, 12}, 0.2, 3), part("a", {-3, 3, 9, 15, 21}, 0.1, 1)})) ==
-        "-3:1 0:2 6:2 12:2 15:1 21:1");
+        "-3:1 0:1 6:2 12:1 15:1 21:1");
 }
 
 TEST_CASE("without reference times the later first time is newer, then the later argument") {
-  CHECK(story(join({part("b", {6, 12, 18}, 0.2), part("a", {0, 6, 12, 24}, 0.1)})) == "0:1 6:2 12:2 18:2 24:1");
+  CHECK(story(join({part("b", {6, 12, 18}, 0.2), part("a", {0, 6, 12, 24}, 0.1)})) == "0:1 6:1 12:2 18:1 24:1");
   CHECK(story(join({part("a", {0, 6}, 0.1), part("b", {0, 6}, 0.2)})) == "0:2 6:2");
   CHECK(story(join({part("b", {0, 6}, 0.2), part("a", {0, 6}, 0.1)})) == "0:1 6:1");
   // One file that names no reference time makes those of the others count for nothing.
-  CHECK(story(join({part("a", {0, 6}, 0.1, 99), part("b", {3, 9}, 0.2)})) == "0:1 3:2 9:2");
+  CHECK(story(join({part("a", {0, 6}, 0.1, 99), part("b", {3, 9}, 0.2)})) == "0:1 3:1 9:2");
+}
+
+TEST_CASE("a newer cycle takes over without a jump, and gives back without one") {
+  // Three cycles of hourly fields, the second and third not a multiple of six hours after the one before, so that joints lie in joints. Each
+  // is 0.3 m/s away from the one before: between two hours the joint adds at most 1.5·0.3/6 h for each of the two cycles that may be
+  // fading at once.
+  const auto hours = [](double first, std::size_t count) { return test::steps(first, 1, count); };
+  const auto grid =
+      join({part("c", hours(12, 30), 0.3, 12), part("a", hours(0, 60), 0.3, 0), part("b", hours(9, 40), 0.6, 9)});
+  REQUIRE(grid);
+  REQUIRE(grid->axes.times_s.size() == 60);
+  const double most = 2 * 1.5 * 0.3 / 6 + 1e-6;
+  double highest = 0;
+  for (std::size_t t = 0; t + 1 < 60; ++t) {
+    CHECK(std::abs(static_cast<double>(grid->values[8 * (t + 1)]) - static_cast<double>(grid->values[8 * t])) <= most);
+    highest = std::max(highest, static_cast<double>(grid->values[8 * t]));
+  }
+  CHECK(grid->values[8 * 20] == 0.3F);  // the newest alone
+  CHECK(highest > 0.4);                 // the middle one was heard
+  // Halfway through the joint of two cycles is halfway between them.
+  const auto two = join({part("a", hours(0, 20), 0.2, 0), part("b", hours(10, 20), 0.4, 10)});
+  REQUIRE(two);
+  CHECK(two->values[8 * 13] == Approx(0.3).margin(1e-7));
+  CHECK(two->values[8 * 16] == 0.4F);
+}
+
+TEST_CASE(
+    "a current that two cycles agree on is left bit by bit, and a node that one of them has not is the newest one's") {
+  auto older = part("a", test::steps(0, 1, 20), 0.1F, 0), newer = part("b", test::steps(10, 1, 20), 0.1F, 10);
+  for (std::size_t t = 0; t < 20; ++t) {
+    older.grid.values[8 * t + 2] = older.grid.values[8 * t + 3] =
+        std::numeric_limits<float>::quiet_NaN();  // node 1: only the newer has it
+    newer.grid.values[8 * t + 4] = newer.grid.values[8 * t + 5] =
+        std::numeric_limits<float>::quiet_NaN();  // node 2: only the older
+  }
+  const auto grid = join({older, newer});
+  REQUIRE(grid);
+  for (std::size_t t = 0; t < 30; ++t) CHECK(grid->values[8 * t] == 0.1F);
+  CHECK(grid->values[8 * 12 + 2] == 0.1F);
+  CHECK(std::isnan(grid->values[8 * 12 + 4]));
 }
 
 TEST_CASE("files of one cycle interleave, and equal times go to the later argument") {

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
+#include <string>
 
 #include "tests/support/fields.hpp"
 
@@ -67,4 +69,44 @@ TEST_CASE("every level has its own land, and missing times do not speak against 
   });
   CHECK(zeros_to_land(grid) == 5 + 15);
   CHECK(dry(grid) == "0,0 1,0 2,0 3,0 4,0");
+}
+
+TEST_CASE("a time that ends in zeros was not written to its end, wherever the writer stopped") {
+  // 12 by 20 nodes, three times, a land of zeros in the south-west. A classic file has its rows from south to north, so what is missing is
+  // the north; a file turned round lacks the south, one with longitude first a side.
+  const auto sea = [](std::size_t time, std::size_t side, const std::function<bool(double, double)>& lost) {
+    ocean::GridAxes axes{test::steps(0, 3600, 3), {0.0}, test::steps(0, 1, 12), test::steps(0, 1, 20), true, false};
+    auto grid = test::make_grid(std::move(axes), [](double lat, double lon, double, double t) {
+      const bool land = lat < 3 && lon < 4;
+      return land ? std::pair{0.0, 0.0} : std::pair{0.2 + 0.01 * std::sin(t + lat), 0.1 * std::cos(t + 3 * lon)};
+    });
+    for (std::size_t n = 0; n < 240; ++n)
+      if (lost(static_cast<double>(n / 20), static_cast<double>(n % 20))) grid.values[2 * (240 * time + n) + side] = 0;
+    return grid;
+  };
+  for (std::size_t time = 0; time < 3; ++time)
+    for (std::size_t side = 0; side < 2; ++side)
+      for (int rows = 1; rows <= 12; ++rows) {
+        const auto north = unwritten_end(sea(time, side, [&](double lat, double) { return lat >= 12 - rows; }));
+        CHECK(north.find(std::string{side == 0 ? "eastward" : "northward"}) != std::string::npos);
+        CHECK(north.find(std::to_string(rows) + " northernmost of 12 rows is exactly zero at 1970-01-01T0" +
+                         std::to_string(time)) != std::string::npos);
+        CHECK_FALSE(unwritten_end(sea(time, side, [&](double lat, double) { return lat < rows; })).empty());
+        CHECK_FALSE(unwritten_end(sea(time, side, [&](double, double lon) { return lon >= 20 - 2 * rows; })).empty());
+      }
+  // Cut in the middle of a row: the whole rows behind it tell.
+  CHECK_FALSE(
+      unwritten_end(sea(2, 1, [](double lat, double lon) { return lat > 8 || (lat == 8 && lon > 7); })).empty());
+  // Whole seas, and slack water somewhere inside, are no unwritten ends; nor is less than a row.
+  CHECK(unwritten_end(sea(0, 0, [](double, double) { return false; })).empty());
+  CHECK(unwritten_end(sea(1, 0, [](double lat, double lon) {
+          return lat > 4 && lat < 9 && lon > 2 && lon < 18;
+        })).empty());
+  CHECK(unwritten_end(sea(1, 1, [](double lat, double lon) { return lat == 11 && lon > 1; })).empty());
+  // One time has nothing to be compared with.
+  auto one = test::make_grid({{0.0}, {0.0}, test::steps(0, 1, 12), test::steps(0, 1, 20), true, false},
+                             [](double lat, double, double, double) {
+                               return std::pair{0.1, lat > 6 ? 0.0 : 0.2};
+                             });
+  CHECK(unwritten_end(one).empty());
 }

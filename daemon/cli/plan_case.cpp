@@ -2,13 +2,37 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/utc.hpp"
+#include "core/ocean/freshness.hpp"
 #include "core/planning/registry.hpp"
 #include "daemon/candidate.hpp"
 
 namespace glidehelm::cli {
+
+namespace {
+
+/// The daemon's rule of age (product.md 7) as an offline plan meets it: counted to the start, so that an old case can be planned with its own
+/// time, but not beyond now, so that next week's departure can be planned on today's forecast.
+std::optional<Trouble> too_old(const daemon::OceanSource& ocean, Instant at, Instant now, std::ostream& err) {
+  const auto issued = ocean.forecast.facts().issued_s;
+  if (!issued) return std::nullopt;
+  const double age_s = epoch_seconds(std::min(at, now)) - *issued;
+  if (age_s > ocean::kExpiredAfter)
+    return Trouble{
+        1,
+        fmt::format("the forecast {} is {:.1f} h old at {}; planned on are at most {:.0f} h (--at sets another time)",
+                    ocean.label(), age_s / 3600, utc_text(std::min(at, now)), ocean::kExpiredAfter / 3600)};
+  if (age_s > ocean::kOldAfter)
+    err << fmt::format("warning: the forecast {} is {:.1f} h old at {}\n", ocean.label(), age_s / 3600,
+                       utc_text(std::min(at, now)));
+  return std::nullopt;
+}
+
+}  // namespace
 
 Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& world, std::ostream& err) {
   Case c;
@@ -61,6 +85,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   if (outside)
     err << "warning: the start time " << utc_text(*at) << " lies outside the forecast, which reaches from "
         << utc_text(instant_at(facts.first_s)) << " to " << utc_text(instant_at(facts.last_s)) << "\n";
+  if (auto old = too_old(*c.ocean, *at, world.clock.utc(), err)) return unexpected(*old);
   auto& r = c.request;
   const auto& m = c.mission;
   r.id = 1;

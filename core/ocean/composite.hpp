@@ -2,46 +2,13 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "core/base/units.hpp"
 #include "core/ocean/gridded.hpp"
+#include "core/ocean/source_layer.hpp"
 
 namespace glidehelm::ocean {
-
-/// Where a source counts, drawn with edges that are straight in latitude and longitude, so that a box is a box. Less than
-/// 180° wide; empty: everywhere.
-class SourceRegion {
- public:
-  SourceRegion() = default;
-  explicit SourceRegion(std::vector<GeoPoint> corners);
-  [[nodiscard]] bool everywhere() const { return corners_.empty(); }
-  /// Even-odd; a position on an edge may count as either. Radians. O(corners).
-  [[nodiscard]] bool contains(double lat, double lon) const;
-  [[nodiscard]] const std::vector<GeoPoint>& corners() const { return corners_; }
-  friend bool operator==(const SourceRegion&, const SourceRegion&) = default;
-
- private:
-  std::vector<GeoPoint> corners_;
-  std::vector<double> lons_;  ///< of the corners, running on across the antimeridian
-  double middle_{};           ///< between the westernmost and the easternmost
-};
-
-/// One source of a composite field.
-struct CompositeSource {
-  std::string name;
-  GriddedField field;
-  SourceRegion region{};
-  double from_s{-1e18}, to_s{1e18};  ///< epoch seconds between which it counts, within its own times
-};
-
-/// How sources give way to each other.
-struct Seams {
-  Metres blend{20'000};      ///< a source fades out over this distance before it ends
-  Seconds join{6 * 3600.0};  ///< … and over this time
-  friend bool operator==(const Seams&, const Seams&) = default;
-};
 
 /// Several sources as one field, most trusted first (docs/decisions/019-sources-in-order-of-trust.md).
 ///
@@ -62,6 +29,7 @@ class CompositeField {
   /// Precondition: at least one source. O(nodes of all sources · sources).
   CompositeField(std::vector<CompositeSource> sources, const Seams& seams);
 
+  /// Allocates nothing, as `advance` and unlike `weights`. O(sources) samples.
   [[nodiscard]] Expected<Sample, NoCurrent> sample(GeoPoint p, Depth z, double t_s) const;
   /// A step with the kernel of the one source that all stages of a lane lie in, where that is certain; else by samples.
   void advance(Lanes& lanes, double t_s, double dt) const;
@@ -78,22 +46,12 @@ class CompositeField {
   [[nodiscard]] std::vector<std::string> faults() const;
 
  private:
-  /// What the constructor finds out about one source.
-  struct Layer {
-    std::vector<bool> here;     ///< by node: always a value, and in the region
-    std::vector<float> inside;  ///< by node: metres from the nearest seam, at most kFarthest beyond `blend`
-    double first_s{}, last_s{};
-    bool fades_in{}, fades_out{};  ///< another source begins earlier, ends later
-  };
   struct Sum;
 
-  void find_seams(std::size_t source);
-  [[nodiscard]] bool has_node_near(std::size_t source, double lat, double lon) const;
-  [[nodiscard]] double inside(std::size_t source, double lat, double lon) const;
   [[nodiscard]] double in_space(std::size_t source, GeoPoint p) const;
-  [[nodiscard]] double in_time(std::size_t source, double t_s) const;
   [[nodiscard]] Expected<Sample, NoCurrent> answer_of(std::size_t source, GeoPoint p, Depth z, double t_s) const;
-  [[nodiscard]] Sum add_up(GeoPoint p, Depth z, double t_s) const;
+  template <class Give>
+  Sum add_up(GeoPoint p, Depth z, double t_s, const Give& give) const;
   [[nodiscard]] bool surely_opaque(std::size_t source, double lat, double lon, double reach, double t_s,
                                    double dt) const;
   [[nodiscard]] bool surely_away(std::size_t source, double lat, double lon, double reach) const;
@@ -101,7 +59,7 @@ class CompositeField {
 
   std::vector<CompositeSource> sources_;
   Seams seams_;
-  std::vector<Layer> layers_;
+  std::vector<SourceLayer> layers_;
 };
 
 }  // namespace glidehelm::ocean

@@ -138,9 +138,10 @@ Fields<Draft> planning_fields() {
                                                                  {"cts-astar-refined", "cts-astar-refined"},
                                                                  {"optimization", "optimization"},
                                                                  {"iterative-optimization", "iterative-optimization"},
+                                                                 {"zermelo", "zermelo"},
                                                                  {"best", "best"}};
   f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
-         {"tve", "astar-tve", "ztve", "zastar-tve", "rrt", "zermelo"});
+         {"tve", "astar-tve", "ztve", "zastar-tve", "rrt"});
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");

@@ -15,8 +15,8 @@ using State = ExtremalFlow::State;
 
 constexpr double kDifference = 200.0;  // metres to each side
 constexpr int kHeadings = 72;
-constexpr int kSteps = 200;          // of an extremal, for the time that still water takes
-constexpr int kParts = 48;           // of collocation
+constexpr int kSteps = 200;  // of an extremal, for the time that still water takes
+constexpr int kParts = 48;   // of collocation
 constexpr int kMostIterations = 40;
 constexpr double kConverged = 1e-9;  // of lengths over the way, and radians
 
@@ -219,8 +219,7 @@ std::optional<Extremal> collocate(const ExtremalFlow& flow, const WayPoint& from
     const State end = state(y, kParts);
     const auto m = LocalMetric::at(0.5 * (end.lat + goal_lat));
     const double radius = goal.radius.si() / length;
-    return Eigen::Vector4d{y[0], y[1],
-                           (goal_lat - end.lat) * m.meridian_radius / length - radius * std::cos(end.psi),
+    return Eigen::Vector4d{y[0], y[1], (goal_lat - end.lat) * m.meridian_radius / length - radius * std::cos(end.psi),
                            (goal_lon - end.lon) * m.parallel_radius / length - radius * std::sin(end.psi)};
   };
   const auto residual = [&](const Vector& y) -> std::optional<Vector> {

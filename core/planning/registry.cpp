@@ -7,13 +7,14 @@
 #include "core/planning/ladder.hpp"
 #include "core/planning/optimization.hpp"
 #include "core/planning/refined_cts.hpp"
+#include "core/planning/zermelo.hpp"
 
 namespace glidehelm::planning {
 
 std::vector<std::string> method_names() {
   return {
-      "direct", "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "optimization", "iterative-optimization",
-      "best"};
+      "direct",  "astar", "cts-astar", "abs-cts-astar", "cts-astar-refined", "optimization", "iterative-optimization",
+      "zermelo", "best"};
 }
 
 std::unique_ptr<const Planner> planner_named(std::string_view name) {
@@ -24,6 +25,7 @@ std::unique_ptr<const Planner> planner_named(std::string_view name) {
   if (name == "cts-astar-refined") return std::make_unique<RefinedCts>();
   if (name == "optimization") return std::make_unique<Optimization>();
   if (name == "iterative-optimization") return std::make_unique<IterativeOptimization>();
+  if (name == "zermelo") return std::make_unique<Zermelo>();
   if (name == "best") return std::make_unique<Ladder>();
   return nullptr;
 }

@@ -32,8 +32,7 @@ Expected<Plan, PlanFailure> Zermelo::plan(const Problem& problem, Members member
   // Inside the goal's disc already, nothing has to be aimed.
   if (distance(problem.start.fix, goal.centre) > goal.radius) {
     way = shoot(flow, dive, goal, problem.horizon_s, may_go_on);
-    if (way.shots == 0 && !way.complete)
-      return unexpected(PlanFailure{NoPlan::out_of_budget, "no extremal was tried"});
+    if (way.shots == 0 && !way.complete) return unexpected(PlanFailure{NoPlan::out_of_budget, "no extremal was tried"});
     if (way.complete && !way.arrives)
       if (auto other = collocate(flow, dive, goal, problem.horizon_s); other && other->arrives) {
         other->shots = way.shots;
@@ -53,10 +52,11 @@ Expected<Plan, PlanFailure> Zermelo::plan(const Problem& problem, Members member
     else if (!way.arrives)
       plan.reason = "no extremal was found that reaches the goal: zermelo is for weak currents";
     else
-      plan.reason = "the flight along the extremal does not reach the goal: zermelo knows no land, and is for weak currents";
-    if (plan.stints.empty() && !way.complete)
-      return unexpected(PlanFailure{NoPlan::out_of_budget, plan.reason});
-    if (plan.stints.empty()) return unexpected(PlanFailure{NoPlan::boxed_in, "no stint leads nearer to the goal: " + plan.reason});
+      plan.reason =
+          "the flight along the extremal does not reach the goal: zermelo knows no land, and is for weak currents";
+    if (plan.stints.empty() && !way.complete) return unexpected(PlanFailure{NoPlan::out_of_budget, plan.reason});
+    if (plan.stints.empty())
+      return unexpected(PlanFailure{NoPlan::boxed_in, "no stint leads nearer to the goal: " + plan.reason});
   }
   plan.statistics.expansions = way.shots;
   plan.statistics.current_evaluations = 2 * flow.evaluations();

@@ -189,16 +189,16 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
        {"7:25 schedule.half_cycles: gives a stint of 307.62 h; allowed: a stint of 0.1 to 72 h"}},
       {"planning: {method: tve}\n",
        {"7:20 planning.method: not available in this version; available: direct, astar, cts-astar, abs-cts-astar, "
-        "cts-astar-refined, optimization, iterative-optimization, best; "
+        "cts-astar-refined, optimization, iterative-optimization, zermelo, best; "
         "found tve"}},
       {"planning: {method: rtr}\n",
        {"7:20 planning.method: not one of the words; found rtr; allowed: direct, astar, cts-astar, abs-cts-astar, "
-        "cts-astar-refined, optimization, iterative-optimization, best"}},
+        "cts-astar-refined, optimization, iterative-optimization, zermelo, best"}},
       {"planning: {method: cts_astar}\n",
        {"7:20 planning.method: not one of the words; found cts_astar; allowed: direct, astar, cts-astar, "
         "abs-cts-astar, "
         "cts-astar-refined, optimization, iterative-optimization, "
-        "best; did you mean "
+        "zermelo, best; did you mean "
         "cts-astar?"}},
       {"planning: {headings: 73}\n", {"7:22 planning.headings: out of range; found 73; allowed: 4 to 72"}},
       {"planning: {cell_km: atuo}\n",

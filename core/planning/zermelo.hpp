@@ -7,7 +7,7 @@ namespace glidehelm::planning {
 /// The quickest way as a boundary value problem (Thesis 4.7), for validation where currents are weak.
 ///
 /// The extremal is found by shooting, and by collocation when no shot arrives (extremal.hpp). It is followed with one heading for each stint
-/// and flown as the lists that will be emitted, like `astar` (docs/decisions/023). It knows no land: an extremal that leads across it is
+/// and flown as the lists that will be emitted, like `astar` (docs/decisions/023, 029). It knows no land: an extremal that leads across it is
 /// flown as far as the margin allows, and the plan is a closest approach whose reason says so. Where currents are stronger than the glider,
 /// extremals part too fast to be aimed, or none arrives; the reason says that.
 ///

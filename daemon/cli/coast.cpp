@@ -10,6 +10,7 @@
 
 #include "core/base/text.hpp"
 #include "core/chart/grown_land.hpp"
+#include "core/chart/joined_areas.hpp"
 #include "daemon/cli/coast_cut.hpp"
 
 namespace glidehelm::cli {
@@ -259,6 +260,21 @@ Expected<CoastPointer, std::string> grown(const CoastPointer& coast, const Coast
   return std::move(land).value();
 }
 
+/// Every area cut and grown by itself, then all together.
+Expected<CoastPointer, std::string> made(const std::vector<CoastArea>& areas, const CoastOptions& options,
+                                         world::World& world, std::ostream& err) {
+  std::vector<CoastPointer> parts;
+  for (std::size_t k = 0; k < std::max<std::size_t>(areas.size(), 1); ++k) {
+    const auto cut = areas.empty() ? coast_from(options.from, world) : cut_coast(areas[k], world, err);
+    auto part = cut ? grown(*cut, options) : cut;
+    if (!part) return part;
+    parts.push_back(std::move(part).value());
+  }
+  auto joined = chart::joined_areas(parts);
+  if (!joined) return unexpected(joined.error().problem);
+  return std::move(joined).value();
+}
+
 }  // namespace
 
 Expected<CoastArea, std::string> coast_area(const std::string& text) {
@@ -288,14 +304,18 @@ Expected<CoastArea, std::string> coast_area(const std::string& text) {
 }
 
 int run_coast(const CoastOptions& options, world::World& world, std::ostream& out, std::ostream& err) {
-  if (options.area.empty() == options.from.empty()) {
+  if (options.areas.empty() == options.from.empty()) {
     err << "glidehelm coast: give either --area (to cut a coast) or --from (to grow or simplify one)\n";
     return 2;
   }
-  const auto area = options.from.empty() ? coast_area(options.area) : CoastArea{};
-  if (!area) {
-    err << "glidehelm coast: " << area.error() << "\n";
-    return 2;
+  std::vector<CoastArea> areas;
+  for (const auto& text : options.areas) {
+    const auto area = coast_area(text);
+    if (!area) {
+      err << "glidehelm coast: " << area.error() << "\n";
+      return 2;
+    }
+    areas.push_back(*area);
   }
   const auto target = split(options.output);
   if (target.name.empty() || target.name == "." || target.name == "..") {
@@ -306,8 +326,7 @@ int run_coast(const CoastOptions& options, world::World& world, std::ostream& ou
     err << "glidehelm coast: cannot write " << options.output << ": " << tried.error() << "\n";
     return 1;
   }
-  const auto cut = options.from.empty() ? cut_coast(*area, world, err) : coast_from(options.from, world);
-  const auto coast = cut ? grown(*cut, options) : cut;
+  const auto coast = made(areas, options, world, err);
   if (!coast) {
     err << "glidehelm coast: " << coast.error() << "\n";
     return 1;

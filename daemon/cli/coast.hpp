@@ -3,6 +3,7 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "core/base/expected.hpp"
 #include "core/chart/coast.hpp"
@@ -10,9 +11,11 @@
 
 namespace glidehelm::cli {
 
-/// `glidehelm coast (--area W/E/S/N | --from FILE) [--grow M] [--simplify M] -o FILE`.
+/// `glidehelm coast (--area W/E/S/N … | --from FILE) [--grow M] [--simplify M] -o FILE`.
 struct CoastOptions {
-  std::string area;  ///< "W/E/S/N" in degrees; E may be west of W by the number (across the antimeridian) or exceed 180
+  /// Each "W/E/S/N" in degrees; E may be west of W by the number (across the antimeridian) or exceed 180. Several become one file
+  /// (chart::joined_areas).
+  std::vector<std::string> areas{};
   std::string output;                  ///< the coast file; replaced when it exists
   std::string from{};                  ///< a coast file to start from instead of cutting one
   std::optional<double> grow_m{};      ///< land grown by this much (chart::grown_land)

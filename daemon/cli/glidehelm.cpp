@@ -227,7 +227,10 @@ void add_mafile(CLI::App& app, Action& action) {
 void add_coast(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::CoastOptions>();
   auto* verb = app.add_subcommand("coast", "Cut a coastline from GSHHG full resolution (Debian: gmt, gmt-gshhg-full)");
-  verb->add_option("--area", o->area, "W/E/S/N in degrees, e.g. -19/-12/26.5/30: cut from GSHHG");
+  verb->add_option("--area", o->areas,
+                   "W/E/S/N in degrees, e.g. -19/-12/26.5/30: cut from GSHHG. Again for another area in the same file; "
+                   "what lies between them is forbidden")
+      ->take_all();
   verb->add_option("--from", o->from, "Start from this .coast file instead");
   verb->add_option("--grow", o->grow_m, "Metres: all water this near to land becomes land");
   verb->add_option(

@@ -46,7 +46,7 @@ Run run(const std::string& area, const std::string& output, world::Procs* procs 
   auto world = real.world();
   world::World mine{world.clock, world.files, world.net, world.rng, procs != nullptr ? *procs : world.procs};
   std::ostringstream out, err;
-  const int code = run_coast({area, output}, mine, out, err);
+  const int code = run_coast({{area}, output}, mine, out, err);
   return {code, out.str(), err.str()};
 }
 
@@ -384,7 +384,7 @@ TEST_CASE("coast grows and simplifies a file that is there and says what it did"
     const int code = run_coast(options, world, out, err);
     return Run{code, out.str(), err.str()};
   };
-  CoastOptions options{"", folder / "b.coast", folder / "a.coast", 3000.0, {}};
+  CoastOptions options{{}, folder / "b.coast", folder / "a.coast", 3000.0, {}};
   const auto ran = grow(options);
   CHECK(ran.err == "");
   REQUIRE(ran.code == 0);
@@ -397,13 +397,36 @@ TEST_CASE("coast grows and simplifies a file that is there and says what it did"
     CHECK(chart.is_land(destination(at, Bearing{degrees(30 * k)}, Metres{2980})));
     CHECK_FALSE(chart.is_land(destination(at, Bearing{degrees(30 * k)}, Metres{3225})));
   }
-  options.area = "5/6/50/51";
+  options.areas = {"5/6/50/51"};
   CHECK(grow(options).code == 2);
-  options.area = options.from = "";
+  options.areas.clear();
+  options.from.clear();
   CHECK(grow(options).code == 2);
   options.from = folder / "none.coast";
   CHECK(grow(options).code == 1);
   options.from = folder / "a.coast";
   options.grow_m = -1;
   CHECK(grow(options).err.find("0 to 50000 m") != std::string::npos);
+}
+
+TEST_CASE("two areas are cut into one file, with land between them") {
+  NEEDS_GMT();
+  const test::ScratchFolder folder;
+  static world::RealWorld real;
+  auto world = real.world();
+  std::ostringstream out, err;
+  CoastOptions options;
+  options.areas = {"-16/-15.5/27.8/28.2", "-14.2/-13.7/28/28.4"};
+  options.output = folder / "two.coast";
+  REQUIRE(run_coast(options, world, out, err) == 0);
+  CHECK(out.str().find("2 areas") != std::string::npos);
+  const auto coast = chart::Coast::parse(test::file_bytes(options.output));
+  REQUIRE(coast);
+  const chart::Chart chart{chart::ChartSources{*coast, {}, {}}};
+  CHECK_FALSE(chart.is_land(geo_point(28.15, -15.8)));  // water west of Gran Canaria
+  CHECK(chart.is_land(geo_point(28.1, -15)));           // between the areas
+  CHECK(chart.is_land(geo_point(28.3, -14.0)));         // Fuerteventura
+  options.areas.push_back("-15.6/-15/27.8/28");
+  CHECK(run_coast(options, world, out, err) == 1);
+  CHECK(err.str().find("overlap or touch") != std::string::npos);
 }

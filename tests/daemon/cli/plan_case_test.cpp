@@ -27,7 +27,8 @@ std::string mission_in_old_sea(const test::ScratchFolder& folder) {
   const auto path = folder / "m.yaml";
   std::ofstream{path} << "schema: glidehelm/mission/v1\nname: leg\nglider: sim01\ngoal: {lat_deg: 41.2, lon_deg: 5}\n"
                          "start: {lat_deg: 41, lon_deg: 5}\ncurrents: {files: ["
-                      << folder / "sea.nc" << "]}\napproval: {mode: manual}\n";
+                      << folder / "sea.nc"
+                      << "]}\napproval: {mode: manual}\n";
   return path;
 }
 
@@ -47,7 +48,8 @@ Prepared prepare(const std::string& mission, const std::string& at) {
 
 }  // namespace
 
-TEST_CASE("a plan at a time for which the forecast is too old is refused as the daemon would, and told when it is old") {
+TEST_CASE(
+    "a plan at a time for which the forecast is too old is refused as the daemon would, and told when it is old") {
   const test::ScratchFolder folder;
   const auto mission = mission_in_old_sea(folder);
   const auto young = prepare(mission, "2026-03-02T11:00:00Z");  // 35 h
@@ -58,5 +60,6 @@ TEST_CASE("a plan at a time for which the forecast is too old is refused as the 
   CHECK(old.warnings.find("is 37.0 h old at 2026-03-02T13:00:00Z") != std::string::npos);
   CHECK(prepare(mission, "2026-03-03T23:00:00Z").trouble.empty());  // 71 h
   const auto expired = prepare(mission, "2026-03-04T01:00:00Z");
-  CHECK(expired.trouble.find("is 73.0 h old at 2026-03-04T01:00:00Z; planned on are at most 72 h") != std::string::npos);
+  CHECK(expired.trouble.find("is 73.0 h old at 2026-03-04T01:00:00Z; planned on are at most 72 h") !=
+        std::string::npos);
 }

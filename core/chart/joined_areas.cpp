@@ -11,7 +11,9 @@ namespace {
 constexpr auto kRound = static_cast<std::int64_t>(360 * kCoastUnitsPerDegree);
 
 /// How far east of `west` a meridian lies, 0 to 360°.
-std::int64_t east_of(std::int64_t west, std::int64_t meridian) { return ((meridian - west) % kRound + kRound) % kRound; }
+std::int64_t east_of(std::int64_t west, std::int64_t meridian) {
+  return ((meridian - west) % kRound + kRound) % kRound;
+}
 
 using Coasts = std::vector<std::shared_ptr<const Coast>>;
 
@@ -40,7 +42,8 @@ bool meet(const CoastArea& box, const CoastArea& a, const CoastArea& b) {
 }
 
 std::string words(const CoastArea& a) {
-  return coast_degrees(a.west) + "/" + coast_degrees(a.east) + "/" + coast_degrees(a.south) + "/" + coast_degrees(a.north);
+  return coast_degrees(a.west) + "/" + coast_degrees(a.east) + "/" + coast_degrees(a.south) + "/" +
+         coast_degrees(a.north);
 }
 
 /// Marks the edges that run along the border of the box, and no others, as cut.
@@ -72,8 +75,9 @@ Expected<std::shared_ptr<const Coast>, CoastError> joined_areas(const Coasts& co
   for (std::size_t i = 0; i < coasts.size(); ++i)
     for (std::size_t j = i + 1; j < coasts.size(); ++j)
       if (meet(box, coasts[i]->area(), coasts[j]->area()))
-        return unexpected(CoastError{0, 0, "the areas " + words(coasts[i]->area()) + " and " + words(coasts[j]->area()) +
-                                               " overlap or touch: give one area that holds both"});
+        return unexpected(CoastError{0, 0,
+                                     "the areas " + words(coasts[i]->area()) + " and " + words(coasts[j]->area()) +
+                                         " overlap or touch: give one area that holds both"});
 
   // Even-odd: the box is land, each area takes it away again, and its own rings make land inside.
   std::vector<CoastRing> rings{in_box(rectangle(0, box.width(), box.south, box.north), box)};

@@ -13,6 +13,7 @@ namespace glidehelm::chart {
 ///
 /// Refused: none at all, areas that overlap or touch (land would cancel out, and their borders would be a wall between them), a box
 /// wider than 180°, and what Coast::make refuses. Linear in the points.
-Expected<std::shared_ptr<const Coast>, CoastError> joined_areas(const std::vector<std::shared_ptr<const Coast>>& coasts);
+Expected<std::shared_ptr<const Coast>, CoastError> joined_areas(
+    const std::vector<std::shared_ptr<const Coast>>& coasts);
 
 }  // namespace glidehelm::chart

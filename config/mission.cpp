@@ -129,19 +129,32 @@ Fields<planning::LatticeChoice> lattice_fields() {
   return f;
 }
 
+Fields<planning::SectorGrid> sector_grid_fields() {
+  using planning::SectorGrid;
+  Fields<SectorGrid> f;
+  f.whole({"sectors", "rows and columns that an edge may span: 1, 2 or 3 give 8, 16 or 32 directions"},
+          &SectorGrid::sectors, from_to(1, 3));
+  f.maybe_number({"grid_km", "distance of rows and columns; `auto`: as `cell_km`"}, &SectorGrid::spacing, kKilometre,
+                 above(0, 1000), "auto");
+  return f;
+}
+
 Fields<Draft> planning_fields() {
   Fields<Draft> f;
   const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"},
                                                                  {"astar", "astar"},
                                                                  {"cts-astar", "cts-astar"},
                                                                  {"abs-cts-astar", "abs-cts-astar"},
+                                                                 {"tve", "tve"},
+                                                                 {"astar-tve", "astar-tve"},
+                                                                 {"ztve", "ztve"},
+                                                                 {"zastar-tve", "zastar-tve"},
                                                                  {"cts-astar-refined", "cts-astar-refined"},
                                                                  {"optimization", "optimization"},
                                                                  {"iterative-optimization", "iterative-optimization"},
                                                                  {"zermelo", "zermelo"},
                                                                  {"best", "best"}};
-  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods,
-         {"tve", "astar-tve", "ztve", "zastar-tve", "rrt"});
+  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods, {"rrt"});
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");
@@ -150,6 +163,8 @@ Fields<Draft> planning_fields() {
       {"horizon_h", "longest travel time looked at; `auto`: three times that through still water, at least 12 stints"},
       &Draft::horizon, kHour, above(0, 8784), "auto");
   f.part({"astar", "the nodes that `astar` goes over; their spacing is `cell_km`"}, &Draft::lattice, lattice_fields());
+  f.part({"tve", "the grid that `tve`, `astar-tve`, `ztve` and `zastar-tve` go over"}, &Draft::sector_grid,
+         sector_grid_fields());
   f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
   return f;
 }

@@ -60,10 +60,15 @@ void members(LatticeChoice& l, F&& f) {
   f("neighbours", l.neighbours), f("radius", l.radius), f("grid", l.grid);
 }
 template <class F>
+void members(SectorGrid& g, F&& f) {
+  f("sectors", g.sectors), f("spacing_m", g.spacing);
+}
+template <class F>
 void members(Problem& p, F&& f) {
   f("start", p.start), f("goal", std::get<PointGoal>(p.goal)), f("glider", p.glider), f("schedule", p.schedule);
   f("believed_current", p.believed_current), f("horizon_s", p.horizon_s), f("coast_margin_m", p.coast_margin);
   f("headings", p.headings), f("cell_m", p.cell), f("seed", p.seed), f("lattice", p.lattice);
+  f("sector_grid", p.sector_grid);
 }
 }  // namespace glidehelm::planning
 

@@ -366,6 +366,7 @@ planning::Problem Pilot::problem_now() const {
   p.cell = m.cell.value_or(Metres{0});
   p.seed = m.seed;
   p.lattice = m.lattice;
+  p.sector_grid = m.sector_grid;
   return p;
 }
 

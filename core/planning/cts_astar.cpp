@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "core/planning/flight.hpp"
-#include "core/planning/path_keeping.hpp"
-#include "core/planning/purse.hpp"
+#include "core/planning/searched_plan.hpp"
 
 namespace glidehelm::planning {
 
@@ -56,34 +56,17 @@ CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const
   return best;
 }
 
-/// Searches and the flight of what they found.
-struct Attempt {
-  CtsSearch found;
-  Plan plan;
-  bool grounded{};  ///< the search arrives, its flight does not
-};
-
-Attempt attempt(const std::string& method, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-                Purse& purse, const CtsSettings& settings) {
-  Attempt a{search_finely(problem, ocean, chart, purse, settings), {}, false};
-  if (!arrives(a.found) && a.found.exhausted && a.found.stopped.horizon) {
-    CtsSettings farther = settings;
-    farther.cell = Metres{a.found.cell_m};
-    farther.nearest = true;
-    auto nearer = search(problem, ocean, chart, purse.rest(), farther);
-    purse.take(nearer.statistics, nearer.cut_at != 0);
-    if (nearer.nearest_m < a.found.nearest_m) a.found = std::move(nearer);
-  }
-  const bool reaches = arrives(a.found);
-  // Without an arrival the flight ends with the last heading: steering on to the goal is what the search found impossible.
-  const auto stints = static_cast<int>(a.found.headings.size());
-  const double end = stints == 0 ? 0.0 : problem.schedule.surfacing_time(stints - 1).count();
-  const double until_s = reaches ? problem.horizon_s : problem.start.fix_s + end + 1.0;  // a second: times round
-  const auto flown = fly_path(a.found.headings, problem, ocean, chart, until_s);
-  a.plan = plan_from(method, flown, problem, {});
-  a.grounded = reaches && !a.plan.reaches_goal();
-  if (!reaches && !a.plan.reaches_goal()) a.plan.reason = reason_for(a.found, problem);
-  return a;
+/// The searches of one allowance; where nothing arrives within the horizon, also one for the nearest place.
+CtsSearch search_far(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse,
+                     const CtsSettings& settings) {
+  auto found = search_finely(problem, ocean, chart, purse, settings);
+  if (arrives(found) || !found.exhausted || !found.stopped.horizon) return found;
+  CtsSettings farther = settings;
+  farther.cell = Metres{found.cell_m};
+  farther.nearest = true;
+  auto nearer = search(problem, ocean, chart, purse.rest(), farther);
+  purse.take(nearer.statistics, nearer.cut_at != 0);
+  return nearer.nearest_m < found.nearest_m ? nearer : found;
 }
 
 }  // namespace
@@ -101,32 +84,16 @@ Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members membe
 Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& problem,
                                         Members members, const chart::Chart& chart, const Budget& budget,
                                         const std::function<void(const Plan&)>& better) {
-  if (members.empty()) return unexpected(PlanFailure{NoPlan::no_forecast, "no forecast is given"});
-  const auto& ocean = members.front();
-  if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);
-
-  Purse purse{budget};
-  const Metres spare = allowance(problem);
-  CtsSettings settings;
-  settings.allowance = spare;
-  settings.sampling = sampling;
-  auto best = attempt(method, problem, ocean, chart, purse, settings);
-  // What the chart's margin stopped may be mended by another allowance.
-  const bool mendable = best.grounded || (!best.plan.reaches_goal() && best.found.exhausted);
-  if (mendable && best.found.stopped.margin && purse.cut_at() == 0) {
-    settings.allowance = best.grounded ? 3 * spare : Metres{};
-    auto again = attempt(method, problem, ocean, chart, purse, settings);
-    if (better_than(again.plan, best.plan)) best = std::move(again);
-  }
-  if (!best.plan.reaches_goal() && best.plan.stints.empty()) {
-    if (!best.found.exhausted)
-      return unexpected(PlanFailure{NoPlan::out_of_budget, "the search was stopped before its first stint"});
-    return unexpected(PlanFailure{NoPlan::boxed_in, "no stint leads nearer to the goal: " + best.plan.reason});
-  }
-  best.plan.statistics = purse.spent();
-  best.plan.cut_at = purse.cut_at();
-  if (better) better(best.plan);
-  return std::move(best.plan);
+  return plan_by_search(problem, members, chart, budget, better, [&](const ocean::Ocean& ocean) -> Search {
+    return [&](Purse& purse, Metres allowance) {
+      CtsSettings settings;
+      settings.allowance = allowance;
+      settings.sampling = sampling;
+      auto found = search_far(problem, ocean, chart, purse, settings);
+      return Found{method,          {std::move(found.headings)}, arrives(found),
+                   found.exhausted, found.stopped.margin,        reason_for(found, problem)};
+    };
+  });
 }
 
 }  // namespace glidehelm::planning

@@ -7,7 +7,9 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/lattice.hpp"
+#include "core/planning/optimal_course.hpp"
 #include "core/planning/segment_time.hpp"
+#include "core/planning/travel_time.hpp"
 
 namespace glidehelm::planning {
 
@@ -35,21 +37,22 @@ bool after(const Open& a, const Open& b) { return a.f > b.f || (a.f == b.f && a.
 class LatticeSearch {
  public:
   LatticeSearch(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
-                Metres allowance, Metres spacing)
+                const LatticeRules& rules)
       : problem_{problem},
         chart_{chart},
         budget_{budget},
+        rules_{rules},
         goal_{disc_of(problem)},
         motion_{problem, ocean},
-        margin_{problem.coast_margin.si() + allowance.si()},
+        margin_{problem.coast_margin.si() + rules.allowance.si()},
         start_{first_dive(ocean)},
         goal_lat_{goal_.centre.lat.radians()},
         goal_lon_{start_.lon + std::remainder(goal_.centre.lon.radians() - start_.lon, 2 * kPi)},
         lattice_{{start_.lat, start_.lon},
                  {goal_lat_, goal_lon_},
                  reach(),
-                 spacing.si() > 0 ? spacing.si() : cell_of(problem).si(),
-                 problem.lattice,
+                 rules.spacing.si() > 0 ? rules.spacing.si() : cell_of(problem).si(),
+                 rules.grid,
                  ocean.dive.coverage()} {}
 
   LatticeWay run() {
@@ -80,7 +83,7 @@ class LatticeSearch {
     const auto fix = vehicle::state_at(problem_.start.fix, problem_.start.fix_s, waters);
     const auto drift = vehicle::move(waters, ocean.surface, fix, problem_.schedule.time_to_dive.count(), {}, nullptr);
     lost_at_start_ = drift.lost.has_value();
-    return {drift.end.lat, drift.end.lon, drift.end.t_s};
+    return {drift.end.lat, drift.end.lon, drift.end.t_s, 0};
   }
   [[nodiscard]] double reach() const {
     const double way = vehicle::distance_near(start_.lat, start_.lon, goal_);
@@ -97,7 +100,8 @@ class LatticeSearch {
                       static_cast<float>(margin_in_force(start_.lat, start_.lon) - kSlack),
                       false};
     nearest_distance_ = vehicle::distance_near(start_.lat, start_.lon, goal_);
-    if (nearest_distance_ <= goal_.radius.si()) arrive(start_.t_s, 0, start_);
+    if (nearest_distance_ <= goal_.radius.si())
+      arrive(start_.t_s, 0, {start_.lat, start_.lon, start_.t_s, start.margin});
     best_of_node_[static_cast<std::size_t>(lattice_.index(start.row, start.column))] = 0;
     labels_.push_back(start);
     open_.push_back({start.f, 0});
@@ -109,7 +113,7 @@ class LatticeSearch {
       std::pop_heap(open_.begin(), open_.end(), after);
       const Open top = open_.back();
       open_.pop_back();
-      if (top.f >= arrival_) return true;
+      if (top.f >= arrival_ && !rules_.beyond_goal) return true;
       Label& label = labels_[static_cast<std::size_t>(top.label)];
       if (label.expanded || label.f != top.f) continue;  // improved since it was put here
       if (statistics_.expansions >= budget_.work || labels_.size() > kMostLabels) return false;
@@ -134,13 +138,30 @@ class LatticeSearch {
       const double share = 1 - goal_.radius.si() / std::max(to_goal, goal_.radius.si());
       pass(index, from, lat + share * (goal_lat_ - lat), lon + share * (goal_lon_ - lon), -1, -1);
     }
+    const auto best_course = course_beyond(from);
     for (const auto& step : lattice_.steps(from.row)) {
       const int row = from.row + step.rows, column = from.column + step.columns;
-      if (lattice_.contains(row, column))
-        pass(index, from, lattice_.lat(row), lattice_.lon(row, column), row, column);
-      else
+      if (!lattice_.contains(row, column)) {
         stopped_.no_water = true;
+        continue;
+      }
+      const auto known = best_of_node_[static_cast<std::size_t>(lattice_.index(row, column))];
+      if (known >= 0 && labels_[static_cast<std::size_t>(known)].t <= from.t) continue;
+      const double lat1 = lattice_.lat(row), lon1 = lattice_.lon(row, column);
+      if (best_course) {
+        const auto edge = local_offset(lat, lon, lat1, lon1);
+        if (std::abs((*best_course - Course::of(edge.east, edge.north)).si()) >= rules_.cone->si()) continue;
+      }
+      pass(index, from, lat1, lon1, row, column);
     }
+  }
+
+  /// What the cone lies around; none where all edges are examined.
+  [[nodiscard]] std::optional<Course> course_beyond(const Label& from) {
+    if (!rules_.cone || from.parent < 0) return std::nullopt;
+    const auto to = place(from), before = place(labels_[static_cast<std::size_t>(from.parent)]);
+    if (chart_.clearance_at_least(to.lat, to.lon) < margin_ + 1.5 * lattice_.longest_step()) return std::nullopt;
+    return optimal_course(motion_, before, to, statistics_.current_evaluations);
   }
 
   /// The segment to a node, or without one into the goal's disc.
@@ -159,7 +180,9 @@ class LatticeSearch {
       return;
     }
     ++statistics_.cost_evaluations;
-    const auto seconds = segment_time(motion_, lat0, lon0, lat1, lon1, from.t, statistics_.current_evaluations);
+    auto& samples = statistics_.current_evaluations;
+    const auto seconds = rules_.step_control ? travel_time(motion_, lat0, lon0, lat1, lon1, from.t, samples)
+                                             : segment_time(motion_, lat0, lon0, lat1, lon1, from.t, samples);
     if (!seconds) {
       stopped_.forecast_end = stopped_.forecast_end || seconds.error() == NoPassage::forecast_end;
       stopped_.no_water = stopped_.no_water || seconds.error() == NoPassage::no_current;
@@ -168,7 +191,7 @@ class LatticeSearch {
     }
     const double t = from.t + *seconds;
     if (enters)
-      arrive(t, index, {lat1, lon1, t});
+      arrive(t, index, {lat1, lon1, t, from.margin});
     else
       offer(index, from, t, lat1, lon1, row, column);
   }
@@ -188,8 +211,8 @@ class LatticeSearch {
       stopped_.horizon = true;
       return;
     }
-    const double f = t + least_time(lat, lon);
-    if (f >= arrival_) return;
+    const double f = rules_.estimates ? t + least_time(lat, lon) : t;
+    if (f >= arrival_ && !rules_.beyond_goal) return;
     const auto margin = std::max(from.margin, static_cast<float>(margin_in_force(lat, lon) - kSlack));
     const Label label{t, f, parent, row, column, margin, false};
     if (best >= 0 && !labels_[static_cast<std::size_t>(best)].expanded) {
@@ -212,6 +235,9 @@ class LatticeSearch {
     const double d = distance_lower_bound(lat, lon, goal_lat_, goal_lon_) - goal_.radius.si();
     return std::max(0.0, 0.999 * d / motion_.fastest());
   }
+  [[nodiscard]] WayPoint place(const Label& label) const {
+    return {lattice_.lat(label.row), lattice_.lon(label.row, label.column), label.t, label.margin};
+  }
   [[nodiscard]] double margin_in_force(double lat, double lon) const {
     if (chart_.clearance_at_least(lat, lon) >= margin_) return margin_ + kSlack;
     return std::min(margin_ + kSlack, chart_.clearance(lat, lon));
@@ -220,7 +246,7 @@ class LatticeSearch {
     std::vector<WayPoint> way;
     for (; index >= 0; index = labels_[static_cast<std::size_t>(index)].parent) {
       const Label& label = labels_[static_cast<std::size_t>(index)];
-      way.push_back({lattice_.lat(label.row), lattice_.lon(label.row, label.column), label.t});
+      way.push_back(place(label));
     }
     std::reverse(way.begin(), way.end());
     return way;
@@ -229,6 +255,7 @@ class LatticeSearch {
   const Problem& problem_;
   const chart::Chart& chart_;
   const Budget& budget_;
+  const LatticeRules& rules_;
   vehicle::Disc goal_;
   MeanMotion motion_;
   double margin_;
@@ -251,9 +278,24 @@ class LatticeSearch {
 
 }  // namespace
 
+std::string reason_for(const LatticeWay& way) {
+  if (!way.exhausted) return "the search was stopped before it came to the goal";
+  std::string text;
+  const auto add = [&text](bool holds, const char* part) {
+    if (holds) text += std::string{text.empty() ? "" : ", "} + part;
+  };
+  add(way.stopped.horizon, "the horizon");
+  add(way.stopped.forecast_end, "the end of the forecast");
+  add(way.stopped.too_strong, "currents in which no course of the lattice can be held");
+  add(way.stopped.margin, "the margin to land and areas");
+  add(way.stopped.no_water, "land, missing data or the edge of the forecast's area");
+  return text.empty() ? "no segment leads out of the start"
+                      : "no way over the lattice reaches the goal; ways end at: " + text;
+}
+
 LatticeWay search_lattice(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-                          const Budget& budget, Metres allowance, Metres spacing) {
-  return LatticeSearch{problem, ocean, chart, budget, allowance, spacing}.run();
+                          const Budget& budget, const LatticeRules& rules) {
+  return LatticeSearch{problem, ocean, chart, budget, rules}.run();
 }
 
 }  // namespace glidehelm::planning

@@ -17,6 +17,7 @@
 #include "core/model/glider.hpp"
 #include "core/ocean/field.hpp"
 #include "core/planning/lattice_choice.hpp"
+#include "core/planning/sector_grid.hpp"
 #include "core/vehicle/motion.hpp"
 
 /// The seam between a planner and its caller.
@@ -62,7 +63,8 @@ struct Problem {
   int headings{18};           ///< M
   Metres cell{};              ///< merging cell of the search; 0 = half a stint through still water
   std::uint64_t seed{1};
-  LatticeChoice lattice;  ///< of astar
+  LatticeChoice lattice;   ///< of astar
+  SectorGrid sector_grid;  ///< of tve, astar-tve, ztve, zastar-tve
   friend bool operator==(const Problem&, const Problem&) = default;
 };
 

@@ -25,9 +25,7 @@ class Splitter {
 
   [[nodiscard]] Expected<Current, NoPassage> current(Place at, double t_s) {
     ++evaluations_;
-    auto c = motion_.current(at.lat, at.lon, t_s);
-    if (c) return *c;
-    return unexpected(c.error() == ocean::NoCurrent::outside_time ? NoPassage::forecast_end : NoPassage::no_current);
+    return motion_.current(at.lat, at.lon, t_s);
   }
 
   [[nodiscard]] Expected<Passage, NoPassage> pass(Place from, const Current& begin, Place to, double t_s,
@@ -67,22 +65,6 @@ class Splitter {
 };
 
 }  // namespace
-
-MeanMotion::MeanMotion(const Problem& problem, const ocean::Ocean& ocean)
-    : ocean_{ocean},
-      under_{problem.schedule.stint.count() / (problem.schedule.stint + problem.schedule.surface).count()},
-      speed_{under_ * problem.glider.horizontal_speed.si()},
-      fastest_{speed_ + under_ * ocean.dive.fastest().si() + (1 - under_) * ocean.surface.fastest().si()} {}
-
-Expected<Current, ocean::NoCurrent> MeanMotion::current(double lat, double lon, double t_s) const {
-  const auto at = GeoPoint::from_kernel(lat, lon);
-  const auto dive = ocean_.dive.sample(at, t_s);
-  if (!dive) return unexpected(dive.error());
-  const auto surface = ocean_.surface.sample(at, t_s);
-  if (!surface) return unexpected(surface.error());
-  return Current{under_ * dive->current.east + (1 - under_) * surface->current.east,
-                 under_ * dive->current.north + (1 - under_) * surface->current.north};
-}
 
 Expected<double, NoPassage> segment_time(const MeanMotion& motion, double lat0, double lon0, double lat1, double lon1,
                                          double t_s, std::uint64_t& evaluations) {

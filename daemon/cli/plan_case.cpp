@@ -102,6 +102,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
   r.problem.seed = options.seed.value_or(m.seed);
   r.problem.lattice = m.lattice;
+  r.problem.sector_grid = m.sector_grid;
   r.method = m.method;
   r.motion = m.motion;
   r.slot = m.slot;

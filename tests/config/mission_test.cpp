@@ -17,6 +17,11 @@ using Lines = std::vector<std::string>;
 
 namespace {
 
+/// The methods of this version, as a complaint lists them.
+const std::string kMethods =
+    "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, optimization, "
+    "iterative-optimization, zermelo, best";
+
 Lines errors(const std::string& yaml) { return errors_of(read_mission(yaml, "m.yaml", no_files())); }
 /// Errors of the six lines with `more` from line 7 on.
 Lines errors_with(const std::string& more) { return errors(six_lines(more)); }
@@ -75,7 +80,7 @@ start: {lat_deg: -30, lon_deg: -179.5, time: 2026-11-25T06:00Z}
 vehicle: {horizontal_speed_m_per_s: 0.25, glide_angle_deg: 20, dive_depth_m: 900, climb_to_m: 5, current_correction: 0, local_frame_rotation_deg: -3.5}
 schedule: {stint_h: 8, surface_min: 20, first_stint_h: 2}
 currents: {files: [a.nc, b/*.nc], outside_time: cycle, interpolation: akima, variables: {east: uo, north: vo}, time_epoch: 2000-01-01}
-planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, astar: {neighbours: 24, radius: 2, grid: triangular}}
+planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, astar: {neighbours: 24, radius: 2, grid: triangular}, tve: {sectors: 2, grid_km: 4}}
 safety: {coast: c.coast, min_distance_to_coast_m: 0, bathymetry: c.depth, min_water_depth_m: 120, depth_margin_m: 30, max_wpt_distance_m: 50000,
          keep_in: [[{lat_deg: -31, lon_deg: 178}, {lat_deg: -31, lon_deg: -178}, {lat_deg: -28, lon_deg: 180}]], keep_out: []}
 list: {slot: 0, max_waypoints: 1, radius_m: 150, at_end: wait}
@@ -109,6 +114,7 @@ after_goal: next leg-4
   CHECK(m.budget == Seconds{5});
   CHECK(m.horizon == Seconds{240 * 3600});
   CHECK(m.seed == 7);
+  CHECK(m.sector_grid == planning::SectorGrid{2, Metres{4000}});
   CHECK(m.lattice == planning::LatticeChoice{24, 2, planning::GridKind::triangular});
   CHECK(m.coast_file == "c.coast");
   CHECK(m.min_distance_to_coast == Metres{0});
@@ -187,19 +193,12 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
        {"7:37 schedule.half_cycles: both half_cycles and stint_h; allowed: one of the two"}},
       {"schedule: {half_cycles: 900}\n",
        {"7:25 schedule.half_cycles: gives a stint of 307.62 h; allowed: a stint of 0.1 to 72 h"}},
-      {"planning: {method: tve}\n",
-       {"7:20 planning.method: not available in this version; available: direct, astar, cts-astar, abs-cts-astar, "
-        "cts-astar-refined, optimization, iterative-optimization, zermelo, best; "
-        "found tve"}},
-      {"planning: {method: rtr}\n",
-       {"7:20 planning.method: not one of the words; found rtr; allowed: direct, astar, cts-astar, abs-cts-astar, "
-        "cts-astar-refined, optimization, iterative-optimization, zermelo, best"}},
+      {"planning: {method: rrt}\n",
+       {"7:20 planning.method: not available in this version; available: " + kMethods + "; found rrt"}},
+      {"planning: {method: rtr}\n", {"7:20 planning.method: not one of the words; found rtr; allowed: " + kMethods}},
       {"planning: {method: cts_astar}\n",
-       {"7:20 planning.method: not one of the words; found cts_astar; allowed: direct, astar, cts-astar, "
-        "abs-cts-astar, "
-        "cts-astar-refined, optimization, iterative-optimization, "
-        "zermelo, best; did you mean "
-        "cts-astar?"}},
+       {"7:20 planning.method: not one of the words; found cts_astar; allowed: " + kMethods +
+        "; did you mean cts-astar?"}},
       {"planning: {headings: 73}\n", {"7:22 planning.headings: out of range; found 73; allowed: 4 to 72"}},
       {"planning: {cell_km: atuo}\n",
        {"7:21 planning.cell_km: not one of the words; found atuo; allowed: auto, a number; did you mean auto?"}},
@@ -207,6 +206,9 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
        {"7:32 planning.astar.neighbours: no neighbourhood; found 12; allowed: 8, 16 or 24"}},
       {"planning: {astar: {grid: hexagonal}}\n",
        {"7:26 planning.astar.grid: not one of the words; found hexagonal; allowed: regular, irregular, triangular"}},
+      {"planning: {tve: {sectors: 4}}\n", {"7:27 planning.tve.sectors: out of range; found 4; allowed: 1 to 3"}},
+      {"planning: {tve: {grid_km: 0}}\n",
+       {"7:27 planning.tve.grid_km: out of range; found 0; allowed: above 0, up to 1000 km"}},
       {"safety: {min_water_depth_m: 30}\n",
        {"7:29 safety.min_water_depth_m: a least depth needs safety.bathymetry, the depth file to judge it on"}},
       {"safety: {bathymetry: a.depth, min_water_depth_m: 39}\n",

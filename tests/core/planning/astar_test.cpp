@@ -13,7 +13,8 @@ using planning::LatticeChoice;
 namespace {
 
 planning::LatticeWay found(const planning::Problem& p, ocean::FieldRef field, double spacing_m = 3000) {
-  return planning::search_lattice(p, {field, field}, chart::Chart{}, {}, Metres{0}, Metres{spacing_m});
+  return planning::search_lattice(p, {field, field}, chart::Chart{}, {},
+                                  {.grid = p.lattice, .spacing = Metres{spacing_m}});
 }
 
 /// How much longer the shortest way over directions at most `apart` degrees from each other is than the straight one.

@@ -25,7 +25,8 @@ Attempt attempt(const Problem& problem, const ocean::Ocean& ocean, const chart::
     // Without an arrival the flight ends with the last heading: steering on to the goal is what the search found impossible.
     const auto stints = static_cast<int>(headings.size());
     const double end = stints == 0 ? 0.0 : problem.schedule.surfacing_time(stints - 1).count();
-    const double until_s = a.found.arrives ? problem.horizon_s : problem.start.fix_s + end + 1.0;  // a second: times round
+    const double until_s =
+        a.found.arrives ? problem.horizon_s : problem.start.fix_s + end + 1.0;  // a second: times round
     auto plan = plan_from(a.found.method, fly_path(headings, problem, ocean, chart, until_s), problem, {});
     if (!flown || better_than(plan, a.plan)) a.plan = std::move(plan);
     flown = true;

@@ -11,12 +11,13 @@ namespace glidehelm::planning {
 
 /// What a search found, before it is flown.
 struct Found {
-  std::string method;                       ///< label of the plan
-  std::vector<std::vector<Heading>> ways;   ///< headings of stints; each way is flown, and the best flight counts, the first of equals
-  bool arrives{};                           ///< by the search's own reckoning
-  bool exhausted{};                         ///< ended by itself, not by the budget
-  bool met_margin{};                        ///< the chart's margin ended ways
-  std::string reason;                       ///< in words, why it does not arrive
+  std::string method;  ///< label of the plan
+  std::vector<std::vector<Heading>>
+      ways;            ///< headings of stints; each way is flown, and the best flight counts, the first of equals
+  bool arrives{};      ///< by the search's own reckoning
+  bool exhausted{};    ///< ended by itself, not by the budget
+  bool met_margin{};   ///< the chart's margin ended ways
+  std::string reason;  ///< in words, why it does not arrive
 };
 /// One search, paid from the purse, that keeps `allowance` of clearance beyond the coastal margin.
 using Search = std::function<Found(Purse& purse, Metres allowance)>;

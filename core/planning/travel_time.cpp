@@ -19,8 +19,7 @@ Current mean(const Current& a, const Current& b) { return {0.5 * (a.east + b.eas
 class March {
  public:
   March(const MeanMotion& motion, double lat0, double lon0, double lat1, double lon1, double t_s,
-        std::uint64_t& evaluations,
-        double tolerance)
+        std::uint64_t& evaluations, double tolerance)
       : motion_{motion},
         evaluations_{evaluations},
         tolerance_{tolerance},

@@ -47,14 +47,17 @@ Found search_and_smooth(Tve::Method method, const Problem& problem, const ocean:
     way = run(method);
   }
   const auto margin = problem.coast_margin + allowance;
-  Found found{std::string{name_of(method)}, {headings_along(way.points, problem, ocean, chart, margin)},
-              way.arrives, way.exhausted, way.stopped.margin, reason_for(way)};
+  Found found{std::string{name_of(method)},
+              {headings_along(way.points, problem, ocean, chart, margin)},
+              way.arrives,
+              way.exhausted,
+              way.stopped.margin,
+              reason_for(way)};
   if (!way.arrives) return found;
   Statistics statistics;
   const auto smooth = smooth_way(way.points, problem, ocean, chart, statistics);
   purse.take(statistics, false);
-  if (smooth.size() < way.points.size())
-    found.ways.push_back(headings_along(smooth, problem, ocean, chart, margin));
+  if (smooth.size() < way.points.size()) found.ways.push_back(headings_along(smooth, problem, ocean, chart, margin));
   return found;
 }
 
@@ -78,8 +81,7 @@ std::vector<WayPoint> smooth_way(const std::vector<WayPoint>& way, const Problem
   return smooth(way, [&](const WayPoint& from, const WayPoint& to, double t_s) -> std::optional<double> {
     if (!chart.segment_is_clear(from.lat, from.lon, to.lat, to.lon, from.margin_m)) return std::nullopt;
     ++statistics.cost_evaluations;
-    const auto seconds =
-        travel_time(motion, from.lat, from.lon, to.lat, to.lon, t_s, statistics.current_evaluations);
+    const auto seconds = travel_time(motion, from.lat, from.lon, to.lat, to.lon, t_s, statistics.current_evaluations);
     return seconds ? std::optional{*seconds} : std::nullopt;
   });
 }

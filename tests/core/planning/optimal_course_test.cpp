@@ -40,8 +40,7 @@ template <class Way>
 double error_of(const test::FromFunction& current, const Way& p, double dt) {
   const Place a = p(0.0), b = p(dt), c = p(1.5 * dt - 1), d = p(1.5 * dt + 1);
   std::uint64_t samples = 0;
-  const auto course =
-      optimal_course({always_under(), {current, current}}, at(a.x, a.y, 0), at(b.x, b.y, dt), samples);
+  const auto course = optimal_course({always_under(), {current, current}}, at(a.x, a.y, 0), at(b.x, b.y, dt), samples);
   REQUIRE(course);
   CHECK(samples == 9);
   return std::abs(in_degrees(*course - Course::of(d.x - c.x, d.y - c.y)));
@@ -100,7 +99,9 @@ TEST_CASE("where an edge cannot be held or a current is missing there is no best
   std::uint64_t samples = 0;
   const test::Uniform across{0, 0.5};
   CHECK_FALSE(optimal_course({always_under(), {across, across}}, at(0, 0, 0), at(6e3, 0, 2e4), samples));
-  const test::FromFunction small{[](double, double, double) { return std::pair{0.0, 0.0}; }, 0,
-                                 test::box_around(geo_point(0, 0), 0.05)};
+  const test::FromFunction small{[](double, double, double) {
+                                   return std::pair{0.0, 0.0};
+                                 },
+                                 0, test::box_around(geo_point(0, 0), 0.05)};
   CHECK_FALSE(optimal_course({always_under(), {small, small}}, at(0, 0, 0), at(5e3, 0, 2e4), samples));
 }

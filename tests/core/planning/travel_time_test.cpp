@@ -133,15 +133,16 @@ TEST_CASE("a way on which the course cannot be held is infeasible, wherever that
   const auto far_side = across([](double x, double) { return x < 15e3 ? 0.0 : 0.35; });
   for (const ocean::FieldRef field : {ocean::FieldRef{against}, ocean::FieldRef{crossing}, ocean::FieldRef{far_side}}) {
     std::uint64_t samples = 0;
-    const auto t =
-        travel_time({always_under(), {field, field}}, 0, 0, 0, 20e3 / kPerRadian, test::kT0, samples);
+    const auto t = travel_time({always_under(), {field, field}}, 0, 0, 0, 20e3 / kPerRadian, test::kT0, samples);
     REQUIRE_FALSE(t);
     CHECK(t.error() == NoPassage::too_strong);
   }
   // Erratum of eq. 6: against a current of 0.4 the larger root is −0.1 m/s, a real number and still no way.
   CHECK_FALSE(vehicle::crossing_time({1000, 0}, kU, -0.4, 0));
-  const test::FromFunction small{[](double, double, double) { return std::pair{0.0, 0.0}; }, 0,
-                                 test::box_around(geo_point(0, 0), 0.05)};
+  const test::FromFunction small{[](double, double, double) {
+                                   return std::pair{0.0, 0.0};
+                                 },
+                                 0, test::box_around(geo_point(0, 0), 0.05)};
   std::uint64_t samples = 0;
   const auto out = travel_time({always_under(), {small, small}}, 0, 0, 0, 10e3 / kPerRadian, test::kT0, samples);
   REQUIRE_FALSE(out);

@@ -82,8 +82,8 @@ TEST_CASE("the nearer the goal the more the estimates of ZA*TVE save") {
   for (const double x : {0.0, 2.0, 4.0, 6.0}) {
     const auto p = EichhornJet::problem(x, 0);
     const auto all = found(p, jet.ocean(), Method::tve, true), both = found(p, jet.ocean(), Method::zastar_tve);
-    const double ratio = static_cast<double>(all.statistics.cost_evaluations) /
-                         static_cast<double>(both.statistics.cost_evaluations);
+    const double ratio =
+        static_cast<double>(all.statistics.cost_evaluations) / static_cast<double>(both.statistics.cost_evaluations);
     INFO("start (" << x << ", 0)");
     CHECK(ratio > before);
     CHECK(same_places(all, both));
@@ -104,15 +104,17 @@ TEST_CASE("estimates never change what TVE finds where the vehicle is faster tha
   }
 }
 
-TEST_CASE("in still water plans over a sector grid lie between the straight way and the worst of its directions, smooth ones near the first") {
+TEST_CASE(
+    "in still water plans over a sector grid lie between the straight way and the worst of its directions, smooth ones "
+    "near the first") {
   // Directions at most atan(1/n) apart cost 1/cos of half the gap: 8.2 %, 2.7 % and 1.3 %. Smoothing finds the straight line itself.
   const auto still = test::still_water();
   const std::array<ocean::Ocean, 1> members{ocean::Ocean{still, still}};
   for (const auto method : kMethods)
     for (const int sectors : {1, 2, 3})
       for (const double bearing : {0.0, 22.5, 75.0, 190.0, 300.0}) {
-        auto p = test::problem_between(geo_point(45, 179.7),
-                                       destination(geo_point(45, 179.7), Bearing{degrees(bearing)}, Metres{70e3}), 1000);
+        auto p = test::problem_between(
+            geo_point(45, 179.7), destination(geo_point(45, 179.7), Bearing{degrees(bearing)}, Metres{70e3}), 1000);
         p.sector_grid.sectors = sectors;
         const planning::Tve planner{method};
         const auto plan = planner.plan(p, members, chart::Chart{}, {}, {});

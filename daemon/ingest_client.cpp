@@ -72,6 +72,10 @@ std::vector<std::string> reading_arguments(const IngestOptions& options) {
     arguments.emplace_back(name);
     arguments.push_back(*text);
   }
+  if (options.member) {
+    arguments.emplace_back("--member");
+    arguments.push_back(std::to_string(*options.member));
+  }
   if (options.area) {
     // One word with "=": a western edge begins with a minus sign.
     arguments.push_back("--area=" + decimal(options.area->west_deg) + "/" + decimal(options.area->east_deg) + "/" +

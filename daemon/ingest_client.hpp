@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -25,6 +26,7 @@ struct IngestOptions {
   std::string grid_file;  ///< of a model whose grid is not in its forecasts; never left out of a set; empty: none
   std::string rotation;   ///< "angle", "grid", "none"; empty: recognised
   std::string s_levels;   ///< "vtransform=…,vstretching=…,theta_s=…,theta_b=…,hc=…"; empty: as the files say
+  std::optional<std::uint32_t> member;  ///< of an ensemble, from 0 in the order of the file; none: 0
   std::string keep_in;    ///< folder where the grid keeps its name (another process maps it too); empty: none
   Seconds deadline{300};  ///< on the wall; longer than the CPU time that the child may use
   /// Of the child, bytes; 0: no limit. Enough for a file of 4 GB beside its grid.

@@ -43,6 +43,10 @@ void add_reading(CLI::App* verb, daemon::IngestOptions& ingest) {
       ->check(CLI::IsMember({"angle", "grid", "none"}));
   verb->add_option("--s-levels", ingest.s_levels,
                    "ROMS levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
+  verb->add_option_function<std::uint32_t>(
+          "--member", [&ingest](std::uint32_t member) { ingest.member = member; },
+          "Member of an ensemble, counted from 0 in the order of the file (default 0)")
+      ->check(CLI::Range(0, 99'999));
 }
 
 void add_info(CLI::App* field, Action& action) {

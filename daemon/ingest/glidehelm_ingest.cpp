@@ -41,6 +41,7 @@ struct Arguments {
   std::vector<std::string> files, grid_files;
   std::string output, variables, epoch, area, heights, equator_band, fill_gaps, rotation, s_levels;
   double settle_s{};
+  std::optional<std::size_t> member;
   std::string positive, crs, depth_variable;
   bool refused_before{}, tell{}, bathymetry{};
 };
@@ -127,6 +128,7 @@ std::optional<std::string> read_options(const Arguments& arguments, ReadOptions&
     if (!km || *km < 0 || *km > 500) return "--fill-gaps " + arguments.fill_gaps + ": allowed is 0 to 500 km";
     options.fill_gaps_m = *km * 1000;
   }
+  options.member = arguments.member;
   if (auto wrong = read_model_options(arguments, options)) return wrong;
   if (arguments.area.empty()) return std::nullopt;
   std::vector<double> edges;
@@ -377,6 +379,8 @@ int main(int argc, char** argv) {
                  "velocities along a model's axes, turned by its angle or by its grid; or none: east and north");
   app.add_option("--s-levels", arguments.s_levels,
                  "s-levels that the files do not describe: vtransform=,vstretching=,theta_s=,theta_b=,hc=");
+  app.add_option("--member", arguments.member, "member of an ensemble, counted from 0 in the order of the file")
+      ->check(CLI::Range(0, 99'999));
   app.add_flag("--bathymetry", arguments.bathymetry,
                "FILE holds depths (NetCDF or ESRI ASCII): write the depth file that safety.bathymetry names");
   app.add_option("--positive", arguments.positive,

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daemon/ingest/ensemble.hpp"
 #include "daemon/ingest/part.hpp"
 #include "daemon/ingest/plausible.hpp"
 
@@ -46,7 +47,8 @@ Result<std::vector<Part>> pair_halves(std::vector<Part> parts) {
     const Holds wanted = parts[p].holds == Holds::east ? Holds::north : Holds::east;
     std::size_t other = p + 1;
     while (other < parts.size() &&
-           (used[other] || parts[other].holds != wanted || parts[other].grid.axes != parts[p].grid.axes))
+           (used[other] || parts[other].holds != wanted || parts[other].grid.axes != parts[p].grid.axes ||
+            !of_one_member(parts[p], parts[other])))
       ++other;
     if (other == parts.size())
       return fault(parts[p].file + ": it has the " + (wanted == Holds::north ? "eastward" : "northward") +

@@ -88,7 +88,8 @@ NetcdfFile::NetcdfFile(NetcdfFile&& other) noexcept
       dimensions_{std::move(other.dimensions_)},
       variables_{std::move(other.variables_)},
       attributes_{std::move(other.attributes_)},
-      groups_{std::move(other.groups_)} {}
+      groups_{std::move(other.groups_)},
+      member_{std::move(other.member_)} {}
 
 Result<NetcdfFile> NetcdfFile::open(std::span<const std::byte> bytes) {
   int id = -1;
@@ -165,7 +166,7 @@ Result<Done> NetcdfFile::read_header() {
     int rank = 0, count = 0;
     if (const int code = nc_inq_var(id_, v, name.data(), &type, &rank, ids.data(), &count); code != NC_NOERR)
       return library_fault("reading the variables", code);
-    Variable variable{v, name.data(), type_of(type), {}, {}, false};
+    Variable variable{v, name.data(), type_of(type), {}, {}, false, {}};
     for (int d = 0; d < rank; ++d) {
       std::size_t at = 0;
       while (at < dimension_ids.size() && dimension_ids[at] != ids[static_cast<std::size_t>(d)]) ++at;
@@ -211,6 +212,19 @@ std::string NetcdfFile::text(std::string_view attribute) const {
   for (const auto& candidate : attributes_)
     if (candidate.name == attribute) return std::string{trimmed(candidate.text)};
   return {};
+}
+
+void NetcdfFile::narrow(EnsembleMember member) {
+  for (auto& variable : variables_) {
+    std::vector<std::size_t> left;
+    for (std::size_t d = 0; d < variable.dimensions.size(); ++d)
+      if (variable.dimensions[d] == member.dimension)
+        variable.narrowed.push_back(d);
+      else
+        left.push_back(variable.dimensions[d]);
+    variable.dimensions = std::move(left);
+  }
+  member_ = std::move(member);
 }
 
 std::string NetcdfFile::shape_of(const Variable& variable) const {
@@ -259,8 +273,13 @@ Result<std::vector<double>> NetcdfFile::fetch(const Variable& variable, std::spa
   for (const auto n : count) size *= n;
   std::vector<double> values(size);
   if (size == 0) return values;
-  const int code = start.empty() ? nc_get_var_double(id_, variable.id, values.data())
-                                 : nc_get_vara_double(id_, variable.id, start.data(), count.data(), values.data());
+  std::vector<std::size_t> from(start.begin(), start.end()), some(count.begin(), count.end());
+  for (const auto d : variable.narrowed) {
+    from.insert(from.begin() + static_cast<std::ptrdiff_t>(d), member_->index);
+    some.insert(some.begin() + static_cast<std::ptrdiff_t>(d), 1);
+  }
+  const int code = from.empty() ? nc_get_var_double(id_, variable.id, values.data())
+                                : nc_get_vara_double(id_, variable.id, from.data(), some.data(), values.data());
   if (code != NC_NOERR) return library_fault("reading " + variable.name, code);
   if (variable.is_unsigned)
     for (double& value : values) value = variable.as_meant(value);

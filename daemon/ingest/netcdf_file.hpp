@@ -37,6 +37,8 @@ struct Variable {
   std::vector<Attribute> attributes;
   /// The values are unsigned although the type is not (`_Unsigned = "true"`, for formats without unsigned types).
   bool is_unsigned{};
+  /// Where, in the file's own order, the dimension stood that NetcdfFile::narrow took out; ascending, mostly empty.
+  std::vector<std::size_t> narrowed{};
 
   /// A stored number, or one of an attribute that is compared with stored ones, as the file means it: negative numbers
   /// of an `is_unsigned` variable become what their bits say without a sign.
@@ -46,6 +48,16 @@ struct Variable {
   [[nodiscard]] std::string text(std::string_view attribute) const;
   /// The unit: `units`, also written `unit`, `Unit`, `Units`; nothing when none of them is there (or it is empty).
   [[nodiscard]] std::optional<std::string> unit() const;
+};
+
+/// One member of an ensemble that lies along a dimension.
+struct EnsembleMember {
+  std::size_t dimension{};      ///< index into NetcdfFile::dimensions
+  std::size_t count{};          ///< members that the file holds
+  std::size_t index{};          ///< from 0, in the order of the file
+  std::string name;             ///< of the dimension
+  std::string why;              ///< how it was recognised: "standard_name realization", "by name"
+  std::optional<double> label;  ///< the number that the file itself gives the member
 };
 
 /// One NetCDF file of any format, held in memory: the library never opens a path (it would open it twice), and nobody can
@@ -73,6 +85,9 @@ class NetcdfFile {
   /// Text of a global attribute; empty when absent.
   [[nodiscard]] std::string text(std::string_view attribute) const;
   [[nodiscard]] std::size_t length_of(std::size_t dimension) const { return dimensions_[dimension].length; }
+  /// From here on the file is that member alone: its dimension is gone from every variable, and reading counts without it.
+  void narrow(EnsembleMember member);
+  [[nodiscard]] const std::optional<EnsembleMember>& member() const { return member_; }
   /// "u(time, lat, lon)".
   [[nodiscard]] std::string shape_of(const Variable& variable) const;
 
@@ -96,6 +111,7 @@ class NetcdfFile {
   std::vector<Variable> variables_;
   std::vector<Attribute> attributes_;
   std::vector<std::string> groups_;
+  std::optional<EnsembleMember> member_;
 };
 
 }  // namespace glidehelm::ingest

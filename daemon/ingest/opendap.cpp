@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "daemon/ingest/ensemble.hpp"
+
 namespace glidehelm::ingest {
 
 namespace {
@@ -75,12 +77,14 @@ Expected<Part, AddressFault> read_address(const std::string& address, const Unit
     return unexpected(
         AddressFault{"an address with a name and password would stand in every log; it is not read", false});
   options.nodes_at_most = std::min(options.nodes_at_most, kNodesAtMost);
-  const auto file = NetcdfFile::open_address(address);
-  if (!file) return passing(file.error().what);
+  auto opened = NetcdfFile::open_address(address);
+  if (!opened) return passing(opened.error().what);
+  const auto file = one_member(std::move(opened), options.member);
+  if (!file) return unexpected(AddressFault{file.error().what, file.error().library});
   auto part = read_open_file(address, *file, Sha256{}, units, options);
   if (!part) return unexpected(AddressFault{part.error().what, part.error().library});
 
-  const auto again = NetcdfFile::open_address(address);
+  const auto again = one_member(NetcdfFile::open_address(address), options.member);
   if (!again) return passing(again.error().what);
   options.only_time_s = part->grid.axes.times_s.back();
   const auto last = read_open_file(address, *again, Sha256{}, units, options);

@@ -10,6 +10,7 @@
 #include "core/base/utc.hpp"
 #include "daemon/ingest/box.hpp"
 #include "daemon/ingest/component.hpp"
+#include "daemon/ingest/ensemble.hpp"
 #include "daemon/ingest/gap_fill.hpp"
 #include "daemon/ingest/geostrophic.hpp"
 #include "daemon/ingest/model_part.hpp"
@@ -275,6 +276,7 @@ Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, con
   part.grid.facts.sources = {{name, hash}};
   if (!part.grid.facts.layout.empty())  // else no grid file had a part in it
     for (const auto& grid : grids) part.grid.facts.sources.push_back(grid.source);
+  if (auto told = tell_member(part, file, options.member); !told) return unexpected(told.error());
   return part;
 }
 
@@ -289,13 +291,14 @@ Result<Part> read_model_pair(const std::string& name, const std::vector<GridFile
   if (!model) return unexpected(model.error());
   if (!*model) return fault("it and the file of the other component are no velocity on one grid");
   for (const auto& file : files) part.grid.facts.sources.push_back(file.source);
+  if (auto told = tell_member(part, *files.front().file, options.member); !told) return unexpected(told.error());
   return part;
 }
 
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
                        const ReadOptions& options, const std::vector<GridFile>& grids) {
   if (auto whole = check_whole(bytes); !whole) return unexpected(whole.error());
-  const auto file = NetcdfFile::open(bytes);
+  const auto file = one_member(NetcdfFile::open(bytes), options.member);
   if (!file) return unexpected(file.error());
   return read_open_file(name, *file, Sha256::of(bytes), units, options, grids);
 }

@@ -7,6 +7,7 @@
 
 #include "core/ocean/grid_format.hpp"
 #include "daemon/ingest/axis_values.hpp"
+#include "daemon/ingest/netcdf_file.hpp"
 #include "daemon/ingest/vertical.hpp"
 
 /// One file, read.
@@ -37,6 +38,7 @@ struct ReadOptions {
   std::optional<double> only_time_s;  ///< one of the file's times alone: a second look at what may still change
   Turning turning{Turning::recognised};
   std::optional<StretchingChoice> stretching;  ///< of s-levels that the files do not describe
+  std::optional<std::size_t> member;           ///< of an ensemble, from 0; none: 0 (ensemble.hpp)
 };
 
 /// An open file that describes the grid of others, with its name and hash.
@@ -53,6 +55,7 @@ struct Part {
   std::string file;
   ocean::Grid grid;  ///< facts.warnings without the file's name
   Holds holds{Holds::both};
+  std::optional<EnsembleMember> member{};  ///< none: the current is no member of an ensemble
 };
 
 /// Reads the currents of one file: east and north in m/s, NaN where either is missing, axes ascending. Refused, with the

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "daemon/ingest/ensemble.hpp"
 #include "daemon/ingest/grid_file.hpp"
 #include "daemon/ingest/model_levels.hpp"
 #include "daemon/ingest/opendap.hpp"
@@ -86,6 +87,7 @@ class Reader {
     }
     auto whole = pair_halves(std::move(parts));
     if (!whole) return fault_alone(whole.error().what);
+    if (auto same = same_member(*whole); !same) return fault_alone(same.error().what);
     return whole;
   }
 
@@ -100,7 +102,7 @@ class Reader {
 
   /// Opens where the bytes have come to rest: the library reads them in place.
   Result<Done> open_in_place(Open& open, std::size_t i) {
-    auto file = NetcdfFile::open(bytes_of(open.bytes));
+    auto file = one_member(NetcdfFile::open(bytes_of(open.bytes)), options_.member);
     if (!file) return named(names_[i], file.error());
     open.file.emplace(std::move(*file));
     return Done{};

@@ -210,6 +210,9 @@ TEST_CASE("a model's grid is given as one, whether the pattern matches it too or
   auto plain = options;
   plain.rotation.clear();
   CHECK(recipe_of(options) != recipe_of(plain));
+  auto other = options;
+  other.member = 3;
+  CHECK(recipe_of(other) == recipe_of(options) + "\n--member\n3");
 }
 
 TEST_CASE("a refusal of the child is passed on without its name, its warnings left out") {

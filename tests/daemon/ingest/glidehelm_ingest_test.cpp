@@ -289,8 +289,8 @@ TEST_CASE("grids that are not rectilinear are refused by name") {
           .find("projected grid: dimension y of u(y, x)") == 0);
   CHECK(
       refusal(
-          R"(netcdf f { dimensions: member = 3 ; lat = 2 ; lon = 2 ; variables: float lat(lat) ; float lon(lon) ; float u(member, lat, lon) ; float v(member, lat, lon) ; })") ==
-      "dimension member of u(member, lat, lon) is neither time, depth, latitude nor longitude\n");
+          R"(netcdf f { dimensions: quantile = 3 ; lat = 2 ; lon = 2 ; variables: float lat(lat) ; float lon(lon) ; float u(quantile, lat, lon) ; float v(quantile, lat, lon) ; })") ==
+      "dimension quantile of u(quantile, lat, lon) is neither time, depth, latitude nor longitude\n");
   CHECK(
       refusal(
           R"(netcdf f { dimensions: lat = 2 ; lon = 2 ; lat_v = 2 ; variables: float lat(lat) ; float lon(lon) ; float lat_v(lat_v) ; float u(lat, lon) ; float v(lat_v, lon) ; })")

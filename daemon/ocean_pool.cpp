@@ -11,7 +11,7 @@ namespace {
 bool same(const OceanOrder& a, const OceanOrder& b) {
   const auto &m = a.mission, &n = b.mission;
   return a.grids == b.grids && a.cache == b.cache && a.settle == b.settle && a.has_coast == b.has_coast &&
-         m.currents == n.currents && m.climb_to == n.climb_to && m.dive_depth == n.dive_depth &&
+         a.member == b.member && m.currents == n.currents && m.climb_to == n.climb_to && m.dive_depth == n.dive_depth &&
          m.horizontal_speed == n.horizontal_speed && m.glide_angle == n.glide_angle && m.stint == n.stint;
 }
 

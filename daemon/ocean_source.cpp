@@ -60,6 +60,7 @@ IngestOptions ingest_options(const OceanOrder& order) {
                      : currents.rotation == Rotation::none ? "none"
                                                            : "";
   if (currents.s_levels) options.s_levels = s_levels_text(*currents.s_levels);
+  options.member = order.member;
   options.keep_in = order.grids;
   options.cache = order.cache;
   options.settle = order.settle;

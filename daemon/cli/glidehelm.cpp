@@ -57,6 +57,14 @@ void add_plan(CLI::App& app, Action& action) {
       verb->add_option("--budget", o->budget,
                        "Seconds; without it every stage runs to its work limit and the answer is deterministic")
           ->check(CLI::PositiveNumber);
+  auto* member = verb->add_option_function<std::uint32_t>(
+                         "--member", [o](std::uint32_t k) { o->options.member = k; },
+                         "Plan in this member of the forecast's ensemble, counted from 0 (default 0)")
+                     ->check(CLI::Range(0, 99'999));
+  verb->add_option("--members", o->options.members,
+                   "Fly the plan in the members 0 to N - 1 too: who arrives, when, how near the coast")
+      ->check(CLI::Range(1, 100'000))
+      ->excludes(member);
   verb->add_option("--goto", o->options.goto_file, "Write the verified goto list to this new file");
   verb->add_flag("--json", o->options.json, "One JSON document on standard output (schema glidehelm/plan/v1)");
   verb->callback([=, &action] {

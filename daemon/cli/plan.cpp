@@ -10,9 +10,11 @@
 #include "daemon/candidate.hpp"
 #include "daemon/cli/new_file.hpp"
 #include "daemon/cli/plan_case.hpp"
+#include "daemon/cli/plan_members.hpp"
 #include "daemon/places.hpp"
 #include "daemon/verify/judge_request.hpp"
 #include "daemon/world/program_version.hpp"
+#include "daemon/world/terminal.hpp"
 
 namespace glidehelm::cli {
 
@@ -224,11 +226,23 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
       places += (places.empty() ? "" : "\n") + error.message();
     if (!places.empty()) problem = places;
   }
-  if (options.json)
-    out << plan_json(*c, found, bound, problem, planned.count()).dump() << "\n";
-  else if (found) {
+  std::vector<planning::MemberFlight> flights;
+  if (found && options.members > 0) {
+    auto flown = fly_in_members(*c, found->plan, options.members, world::is_terminal(2), world, err);
+    if (!flown) {
+      err << "glidehelm plan: " << flown.error().message << "\n";
+      return flown.error().code;
+    }
+    flights = std::move(flown).value();
+  }
+  if (options.json) {
+    auto document = plan_json(*c, found, bound, problem, planned.count());
+    if (!flights.empty()) document["ensemble"] = members_json(flights);
+    out << document.dump() << "\n";
+  } else if (found) {
     print_table(*c, *found, out);
     if (arrives) print_certificate(bound, arrival_s - c->request.problem.start.fix_s, out);
+    if (!flights.empty()) print_members(flights, out);
   }
   if (!options.json && proven_unreachable(bound, arrives)) out << "proven unreachable: " << bound->reason << "\n";
   if (!found) {

@@ -61,9 +61,13 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   if (!c.chart->chart.has_coast())
     err << "warning: no coastline (safety.coast): land is what the forecast's mask says\n";
   auto at = options.at ? options.at : c.mission.start_time;
-  auto ocean = daemon::load_ocean(
-      {c.mission, world.files.scratch(), c.chart->chart.has_coast(), at.value_or(world.clock.utc()), c.mission.start},
-      world);
+  const auto& currents = c.mission.currents;
+  if ((options.member || options.members > 0) && currents.files.empty() && currents.sources.empty())
+    return unexpected(Trouble{2, "currents are formulas alone: they have no members"});
+  c.order = {c.mission, world.files.scratch(), c.chart->chart.has_coast(), at.value_or(world.clock.utc()),
+             c.mission.start};
+  c.order.member = options.member;
+  auto ocean = daemon::load_ocean(c.order, world);
   if (!ocean) return unexpected(Trouble{1, ocean.error()});
   c.ocean = std::move(ocean).value();
   const auto& facts = c.ocean->forecast.facts();

@@ -18,6 +18,7 @@ struct Case {
   std::shared_ptr<const daemon::ChartSource> chart;
   std::shared_ptr<const daemon::OceanSource> ocean;
   mission::PlanningRequest request;
+  daemon::OceanOrder order;  ///< what `ocean` was loaded by
 };
 
 /// Reads mission, coast and forecast for `plan` and `rehearse`. Warnings go to `err`. The start is --from, else the mission's; the time is

@@ -112,14 +112,6 @@ std::string verdict_text(const Rehearsal& rehearsal) {
   return text;
 }
 
-std::optional<double> quantile(std::vector<double> values, double q) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const double at = q * static_cast<double>(values.size() - 1);
-  const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, values.size() - 1);
-  return values[low] + (at - static_cast<double>(low)) * (values[high] - values[low]);
-}
-
 std::vector<RehearsalSummary> summaries(const Rehearsal& rehearsal) {
   std::vector<std::vector<const Rehearsed*>> groups;
   for (const auto& run : rehearsal.runs) {
@@ -203,12 +195,6 @@ std::string table_text(const Rehearsal& rehearsal) {
          "regret: flown against the plan that knew the ocean; missed: surface intervals without a new list; refused: "
          "files "
          "that the verifier did not accept; coast: the closest of all flights\n";
-}
-
-std::string progress_bar(std::size_t done, std::size_t of) {
-  constexpr std::size_t kWide = 30;
-  const auto filled = of == 0 ? kWide : done * kWide / of;
-  return fmt::format("[{}{}] {} of {} flights", std::string(filled, '#'), std::string(kWide - filled, ' '), done, of);
 }
 
 }  // namespace glidehelm::cli

@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/base/quantile.hpp"
 #include "core/chart/chart.hpp"
+#include "daemon/cli/progress_bar.hpp"
 
 namespace glidehelm::cli {
 
@@ -48,9 +50,6 @@ struct RehearsalSummary {
 };
 std::vector<RehearsalSummary> summaries(const Rehearsal& rehearsal);
 
-/// The share q of sorted values, with linear interpolation between the two nearest; none of nothing.
-std::optional<double> quantile(std::vector<double> values, double q);
-
 /// Flown over planned with knowledge of the ocean, less one; none when either does not arrive.
 std::optional<double> regret(const Rehearsed& run);
 
@@ -70,7 +69,5 @@ std::string in_kilometres(const std::optional<double>& metres);
 std::string in_watt_hours(const std::optional<double>& energy);
 /// "2 x promise arrival, 1 x 2 land".
 std::string rules_text(const std::map<std::string, int>& rules);
-/// "[####      ] 4 of 10 flights".
-std::string progress_bar(std::size_t done, std::size_t of);
 
 }  // namespace glidehelm::cli

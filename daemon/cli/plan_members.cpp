@@ -1,0 +1,83 @@
+#include "daemon/cli/plan_members.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "daemon/cli/progress_bar.hpp"
+
+namespace glidehelm::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json seconds(const std::optional<Seconds>& value) { return value ? Json(value->count()) : Json(nullptr); }
+Json metres(const std::optional<Metres>& value) { return value ? Json(value->si()) : Json(nullptr); }
+std::string hours(const std::optional<Seconds>& value) {
+  return value ? fmt::format("{:.1f} h", value->count() / 3600) : std::string{"-"};
+}
+
+}  // namespace
+
+Expected<std::vector<planning::MemberFlight>, Trouble> fly_in_members(const Case& c, const planning::Plan& plan,
+                                                                      int members, bool progress, world::World& world,
+                                                                      std::ostream& err) {
+  std::vector<planning::MemberFlight> flights;
+  const auto count = static_cast<std::size_t>(members);
+  const auto tell = [&](const std::string& line) {
+    if (progress) err << "\r" << line << std::flush;
+  };
+  for (std::uint32_t member = 0; member < count; ++member) {
+    tell(progress_bar(flights.size(), count));
+    auto order = c.order;
+    order.member = member;
+    const auto ocean = daemon::load_ocean(order, world);
+    if (!ocean) {
+      if (progress) err << "\n";
+      return unexpected(Trouble{1, "member " + std::to_string(member) + ": " + ocean.error()});
+    }
+    flights.push_back(
+        planning::fly_in_member(plan, c.request.problem, (*ocean)->forecast.ocean(), c.chart->chart));
+  }
+  tell(std::string(progress_bar(count, count).size(), ' ') + "\r");
+  return flights;
+}
+
+Json members_json(const std::vector<planning::MemberFlight>& flights) {
+  const auto all = planning::summary_of(flights);
+  Json j{{"members", all.flights},
+         {"arrived", all.arrived},
+         {"arrival_share", all.share()},
+         {"travel_time_s", {{"p10", seconds(all.tenth)}, {"median", seconds(all.median)}, {"p90", seconds(all.ninetieth)}}},
+         {"closest_coast_m", metres(all.coast)}};
+  j["flights"] = Json::array();
+  for (std::size_t k = 0; k < flights.size(); ++k) {
+    const auto& f = flights[k];
+    j["flights"].push_back({{"member", k},
+                            {"travel_time_s", seconds(f.travel)},
+                            {"remaining_distance_m", f.remaining.si()},
+                            {"closest_coast_m", metres(f.coast)},
+                            {"lost", f.lost ? Json(std::string{vehicle::word(*f.lost)}) : Json(nullptr)}});
+  }
+  return j;
+}
+
+void print_members(const std::vector<planning::MemberFlight>& flights, std::ostream& out) {
+  const auto all = planning::summary_of(flights);
+  out << fmt::format("flown in {} members: it arrives in {} of them ({:.0f} %)", all.flights, all.arrived,
+                     100 * all.share());
+  if (all.median)
+    out << fmt::format(", after {} (median; 10 to 90 %: {} to {})", hours(all.median), hours(all.tenth),
+                       hours(all.ninetieth));
+  out << "\n";
+  if (all.coast)
+    out << fmt::format("closest coast in any member {}{:.1f} km\n", all.coast->si() >= chart::Chart::kHorizon ? ">" : "",
+                       all.coast->si() / 1000);
+  for (std::size_t k = 0; k < flights.size(); ++k)
+    if (!flights[k].travel)
+      out << fmt::format("member {:3}: comes within {:.1f} km{}\n", k, flights[k].remaining.si() / 1000,
+                         flights[k].lost ? ", then " + std::string{vehicle::word(*flights[k].lost)} : "");
+}
+
+}  // namespace glidehelm::cli

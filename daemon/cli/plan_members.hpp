@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <ostream>
+#include <vector>
+
+#include "core/planning/member_flight.hpp"
+#include "daemon/cli/plan_case.hpp"
+
+namespace glidehelm::cli {
+
+/// Flies `plan` in the members 0 to `members` − 1 of the case's forecast, one after the other: one at a time is in memory. The
+/// failure names the member. `progress`: a bar on `err`.
+Expected<std::vector<planning::MemberFlight>, Trouble> fly_in_members(const Case& c, const planning::Plan& plan,
+                                                                      int members, bool progress, world::World& world,
+                                                                      std::ostream& err);
+
+/// The key `ensemble` of the plan's document.
+nlohmann::ordered_json members_json(const std::vector<planning::MemberFlight>& flights);
+/// The same in sentences.
+void print_members(const std::vector<planning::MemberFlight>& flights, std::ostream& out);
+
+}  // namespace glidehelm::cli

@@ -40,7 +40,8 @@ MemberFlight fly_in_member(const Plan& plan, const Problem& problem, const ocean
                            const chart::Chart& chart) {
   std::vector<Heading> headings;
   for (const auto& stint : plan.stints) headings.push_back(stint.heading);
-  const auto flown = vehicle::fly_headings(headings, flight_of(problem), waters_of(problem, ocean, chart));
+  const auto within = within_objective(problem);
+  const auto flown = vehicle::fly_headings(headings, flight_of(within), waters_of(within, ocean, chart));
   const auto as_plan = plan_from(plan.method, flown, problem, {});
   MemberFlight flight;
   if (as_plan.reaches_goal()) flight.travel = Seconds{as_plan.arrival_s - problem.start.fix_s};

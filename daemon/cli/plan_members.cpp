@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/vehicle/yo_field.hpp"
 #include "daemon/cli/progress_bar.hpp"
 
 namespace glidehelm::cli {
@@ -16,6 +17,17 @@ Json seconds(const std::optional<Seconds>& value) { return value ? Json(value->c
 Json metres(const std::optional<Metres>& value) { return value ? Json(value->si()) : Json(nullptr); }
 std::string hours(const std::optional<Seconds>& value) {
   return value ? fmt::format("{:.1f} h", value->count() / 3600) : std::string{"-"};
+}
+
+/// The waters of a member as the request's motion model meets them.
+planning::MemberFlight fly_in(const ocean::Forecast& member, const planning::Plan& plan, const Case& c) {
+  const auto& problem = c.request.problem;
+  const auto waters = member.ocean();
+  if (c.request.motion != vehicle::MotionModel::yo_yo || member.facts().levels <= 1)
+    return planning::fly_in_member(plan, problem, waters, c.chart->chart);
+  const auto full = member.full();
+  const vehicle::YoField yo{full, problem.glider, problem.schedule, problem.start.fix_s};
+  return planning::fly_in_member(plan, problem, ocean::Ocean{yo, waters.surface}, c.chart->chart);
 }
 
 }  // namespace
@@ -37,8 +49,7 @@ Expected<std::vector<planning::MemberFlight>, Trouble> fly_in_members(const Case
       if (progress) err << "\n";
       return unexpected(Trouble{1, "member " + std::to_string(member) + ": " + ocean.error()});
     }
-    flights.push_back(
-        planning::fly_in_member(plan, c.request.problem, (*ocean)->forecast.ocean(), c.chart->chart));
+    flights.push_back(fly_in((*ocean)->forecast, plan, c));
   }
   tell(std::string(progress_bar(count, count).size(), ' ') + "\r");
   return flights;
@@ -49,7 +60,8 @@ Json members_json(const std::vector<planning::MemberFlight>& flights) {
   Json j{{"members", all.flights},
          {"arrived", all.arrived},
          {"arrival_share", all.share()},
-         {"travel_time_s", {{"p10", seconds(all.tenth)}, {"median", seconds(all.median)}, {"p90", seconds(all.ninetieth)}}},
+         {"travel_time_s",
+          {{"p10", seconds(all.tenth)}, {"median", seconds(all.median)}, {"p90", seconds(all.ninetieth)}}},
          {"closest_coast_m", metres(all.coast)}};
   j["flights"] = Json::array();
   for (std::size_t k = 0; k < flights.size(); ++k) {
@@ -72,8 +84,8 @@ void print_members(const std::vector<planning::MemberFlight>& flights, std::ostr
                        hours(all.ninetieth));
   out << "\n";
   if (all.coast)
-    out << fmt::format("closest coast in any member {}{:.1f} km\n", all.coast->si() >= chart::Chart::kHorizon ? ">" : "",
-                       all.coast->si() / 1000);
+    out << fmt::format("closest coast in any member {}{:.1f} km\n",
+                       all.coast->si() >= chart::Chart::kHorizon ? ">" : "", all.coast->si() / 1000);
   for (std::size_t k = 0; k < flights.size(); ++k)
     if (!flights[k].travel)
       out << fmt::format("member {:3}: comes within {:.1f} km{}\n", k, flights[k].remaining.si() / 1000,

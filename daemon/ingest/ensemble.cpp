@@ -130,8 +130,8 @@ Result<Done> tell_member(Part& part, const NetcdfFile& file, std::optional<std::
   const auto* read = file.find(facts.east_variable.empty() ? facts.north_variable : facts.east_variable);
   if (read == nullptr || read->narrowed.empty() || !file.member()) {
     if (asked.value_or(0) == 0) return Done{};
-    return fault("member " + std::to_string(*asked) + " is asked for and it holds no ensemble: " +
-                 (read == nullptr ? "the current" : file.shape_of(*read)) +
+    return fault("member " + std::to_string(*asked) +
+                 " is asked for and it holds no ensemble: " + (read == nullptr ? "the current" : file.shape_of(*read)) +
                  " lies on no dimension with the standard_name realization, nor one called ensemble, member or number");
   }
   part.member = file.member();

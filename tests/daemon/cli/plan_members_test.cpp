@@ -105,8 +105,7 @@ TEST_CASE("a plan is flown in every member and arrives in as many as its speed a
   CHECK(all["arrival_share"] == 0.75);
   CHECK(all["travel_time_s"]["median"].get<double>() == about(travel_s(0)));
   // Of three values 10 % lie 0.2 of the way from the first to the second.
-  CHECK(all["travel_time_s"]["p10"].get<double>() ==
-        about(travel_s(0.06) + 0.2 * (travel_s(0) - travel_s(0.06))));
+  CHECK(all["travel_time_s"]["p10"].get<double>() == about(travel_s(0.06) + 0.2 * (travel_s(0) - travel_s(0.06))));
   CHECK(all["closest_coast_m"].is_null());
   REQUIRE(all["flights"].size() == 4);
   CHECK(all["flights"][2]["travel_time_s"].get<double>() == about(travel_s(-0.06)));
@@ -130,6 +129,8 @@ TEST_CASE("members that are not there and formulas are refused by name") {
   CHECK(said.code == 1);
   CHECK(said.out.empty());
   CHECK(said.err.find("member 4: ") != std::string::npos);
-  desk.write_mission("analytic: {kind: constant, origin: {lat_deg: 0, lon_deg: 3}, length_scale_m: 10000, speed_scale_m_per_s: 0.1, params: {u: 1, v: 0}}");
+  desk.write_mission(
+      "analytic: {kind: constant, origin: {lat_deg: 0, lon_deg: 3}, length_scale_m: 10000, speed_scale_m_per_s: 0.1, "
+      "params: {u: 1, v: 0}}");
   CHECK(desk.plan().code == 2);
 }

@@ -30,8 +30,7 @@ double east_at(std::size_t member, std::size_t t, std::size_t z, std::size_t j, 
          0.008 * static_cast<double>(j) + 0.002 * static_cast<double>(i);
 }
 
-const char* const kRealization =
-    "int number(number) ; number:standard_name = \"realization\" ; number:units = \"1\" ;";
+const char* const kRealization = "int number(number) ; number:standard_name = \"realization\" ; number:units = \"1\" ;";
 
 /// The file with its dimensions in the given order; v is −u.
 std::string cdl(const std::array<std::size_t, 5>& order, const std::string& coordinate = kRealization,
@@ -58,7 +57,8 @@ std::string cdl(const std::array<std::size_t, 5>& order, const std::string& coor
          "double lat(lat) ; lat:units = \"degrees_north\" ;\ndouble lon(lon) ; lon:units = \"degrees_east\" ;\n"
          "float u(" +
          names + ") ; u:units = \"m/s\" ;\nfloat v(" + names + ") ; v:units = \"m/s\" ;\ndata:\n" + numbers +
-         "\ntime = 6, 12 ; depth = 0, 10 ; lat = 40, 40.5 ; lon = -5, -4.5, -4 ;\nu = " + u + " ;\nv = " + v + " ;\n}\n";
+         "\ntime = 6, 12 ; depth = 0, 10 ; lat = 40, 40.5 ; lon = -5, -4.5, -4 ;\nu = " + u + " ;\nv = " + v +
+         " ;\n}\n";
 }
 
 const std::array<std::size_t, 5> kUsual{0, 1, 2, 3, 4};
@@ -161,7 +161,8 @@ TEST_CASE("a member that a file does not have is refused with those that it has"
 TEST_CASE("a plain forecast is its own member 0 and has no other") {
   const test::ScratchFolder folder;
   const auto text = replaced(replaced(cdl({1, 2, 0, 3, 4}), "number", "box"), "realization", "quantile");
-  CHECK(contains(refusal(folder, test::make_netcdf(folder, "odd.nc", text)), "dimension box of u(time, depth, box, lat, lon)"));
+  CHECK(contains(refusal(folder, test::make_netcdf(folder, "odd.nc", text)),
+                 "dimension box of u(time, depth, box, lat, lon)"));
   const std::string plain = R"(netcdf f { dimensions: lat = 2 ; lon = 2 ; variables:
     double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
     float u(lat, lon) ; u:units = "m/s" ; float v(lat, lon) ; v:units = "m/s" ;
@@ -201,8 +202,7 @@ TEST_CASE("a component by component ensemble is paired, other members and other 
   const auto u = test::make_netcdf(folder, "u.nc", without(cdl(kUsual), "v"));
   const auto v = test::make_netcdf(folder, "v.nc", without(cdl(kUsual), "u"));
   check_member(run_ingest(folder, u + " " + v + " --member 1"), 1);
-  const auto other =
-      test::make_netcdf(folder, "w.nc", without(cdl(kUsual, kRealization, "number = 5, 8, 9 ;"), "u"));
+  const auto other = test::make_netcdf(folder, "w.nc", without(cdl(kUsual, kRealization, "number = 5, 8, 9 ;"), "u"));
   CHECK(contains(refusal(folder, u + " " + other + " --member 1"), "no file with the northward one"));
 }
 
@@ -215,8 +215,7 @@ TEST_CASE("files of different members are not joined in time") {
   CHECK(joined.view->axes.times_s.size() == 4);
   CHECK(contains(joined.view->facts.layout, "member 1"));
   const auto others = test::make_netcdf(folder, "c.nc", replaced(late, "number = 4, 7, 9", "number = 4, 8, 9"));
-  CHECK(contains(refusal(folder, early + " " + others + " --member 1"),
-                 "files that are joined hold the same member"));
+  CHECK(contains(refusal(folder, early + " " + others + " --member 1"), "files that are joined hold the same member"));
 }
 
 TEST_CASE("a member on a model's own grid is the file of that member alone") {
@@ -232,9 +231,13 @@ TEST_CASE("a member on a model's own grid is the file of that member alone") {
            "y = 6 ; x = 7 ;\nvariables:\ndouble time(time) ; time:units = \"hours since 2024-01-01\" ;\n"
            "double nav_lat(y, x) ; nav_lat:units = \"degrees_north\" ;\n"
            "double nav_lon(y, x) ; nav_lon:units = \"degrees_east\" ;\n"
-           "double uo(time, " + dimension + "y, x) ; uo:units = \"m/s\" ; uo:coordinates = \"nav_lat nav_lon\" ; "
+           "double uo(time, " +
+           dimension +
+           "y, x) ; uo:units = \"m/s\" ; uo:coordinates = \"nav_lat nav_lon\" ; "
            "uo:standard_name = \"eastward_sea_water_velocity\" ;\n"
-           "double vo(time, " + dimension + "y, x) ; vo:units = \"m/s\" ; vo:coordinates = \"nav_lat nav_lon\" ; "
+           "double vo(time, " +
+           dimension +
+           "y, x) ; vo:units = \"m/s\" ; vo:coordinates = \"nav_lat nav_lon\" ; "
            "vo:standard_name = \"northward_sea_water_velocity\" ;\ndata:\ntime = 0 ;\n" +
            test::cdl_data("nav_lat", mesh.lat) + test::cdl_data("nav_lon", mesh.lon) + test::cdl_data("uo", u) +
            test::cdl_data("vo", v) + "}\n";

@@ -114,8 +114,13 @@ void members(Moment& m, F&& f) {
   f("utc_ms", m.utc), f("tick_ms", m.tick);
 }
 template <class F>
+void members(SourceShare& s, F&& f) {
+  f("source", s.source), f("share", s.share);
+}
+template <class F>
 void members(SurfacingHeard& e, F&& f) {
   f("surfacing", e.surfacing), f("coast_distance_m", e.coast_distance), f("forecast", e.forecast);
+  f("shares", e.shares), f("extrapolated", e.extrapolated);
 }
 template <class F>
 void members(FixRefused& e, F&& f) {
@@ -257,7 +262,9 @@ struct Newer {
   json meant;
 };
 const std::vector<Newer>& newer_members() {
-  static const std::vector<Newer> kNewer{{"surfacing_heard", "/forecast", nullptr}};
+  static const std::vector<Newer> kNewer{{"surfacing_heard", "/forecast", nullptr},
+                                         {"surfacing_heard", "/shares", json::array()},
+                                         {"surfacing_heard", "/extrapolated", false}};
   return kNewer;
 }
 

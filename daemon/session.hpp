@@ -97,7 +97,8 @@ class Session {
   void plan_waiting();
   [[nodiscard]] mission::FolderSeen look_into_folder();
   void watch_folder();
-  [[nodiscard]] std::optional<Current> forecast_of_dive(const model::Surfacing& surfacing) const;
+  /// What the forecast in use said of the dive that this surfacing ends.
+  void add_forecast_of_dive(mission::SurfacingHeard& heard) const;
   void follow_mission();
   [[nodiscard]] verify::VerifyRequest verify_request(const mission::Verify& e) const;
   void note(RecordType type, const std::string& payload);

@@ -93,16 +93,32 @@ void Session::hear_block(const protocol::SurfaceBlock& block) {
   }
   std::optional<Metres> coast;
   if (chart_ && chart_->chart.has_coast()) coast = chart_->chart.distance_to_coast(surfacing->fix);
-  const auto forecast = forecast_of_dive(*surfacing);
-  feed(mission::SurfacingHeard{std::move(surfacing).value(), coast, forecast});
+  mission::SurfacingHeard heard;
+  heard.surfacing = std::move(surfacing).value();
+  heard.coast_distance = coast;
+  add_forecast_of_dive(heard);
+  feed(std::move(heard));
 }
 
 /// The forecast in use, along the dive that this fix ends: what the pilot compares with the measured current.
-std::optional<Current> Session::forecast_of_dive(const model::Surfacing& surfacing) const {
+void Session::add_forecast_of_dive(mission::SurfacingHeard& heard) const {
   const auto dive = pilot_.dive_under_way();
   const auto ocean = forecast_.current();
-  if (!dive || !ocean) return std::nullopt;
-  return mean_along(*ocean, *dive, surfacing.fix, epoch_seconds(surfacing.fix_taken));
+  if (!dive || !ocean) return;
+  const auto& surfacing = heard.surfacing;
+  const double until_s = epoch_seconds(surfacing.fix_taken);
+  heard.forecast = mean_along(*ocean, *dive, surfacing.fix, until_s);
+  if (!heard.forecast) return;
+  const double lat = dive->from.lat.radians(), lon = dive->from.lon.radians(),
+               middle_s = 0.5 * (dive->from_s + until_s);
+  const auto middle = GeoPoint::from_kernel(0.5 * (lat + surfacing.fix.lat.radians()),
+                                            lon + 0.5 * std::remainder(surfacing.fix.lon.radians() - lon, 2 * kPi));
+  if (const auto sample = ocean->forecast.ocean().dive.sample(middle, middle_s))
+    heard.extrapolated = sample->extrapolated;
+  const auto& names = ocean->forecast.facts().sources;
+  const auto shares = ocean->forecast.shares(middle, middle_s);
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    if (shares[k] > 0) heard.shares.push_back({k < names.size() ? names[k] : "", shares[k]});
 }
 
 void Session::hear(const protocol::DialogEvent& event) {

@@ -8,6 +8,7 @@
 
 #include "core/mission/delivery.hpp"
 #include "core/mission/mission.hpp"
+#include "core/mission/source_errors.hpp"
 #include "core/model/surfacing.hpp"
 #include "core/ocean/corrected.hpp"
 #include "core/planning/planner.hpp"
@@ -62,11 +63,14 @@ struct Candidate {
 // ---- events ---------------------------------------------------------------------------------------------------------
 
 /// A fix passed the rules that need no memory. `coast_distance`: negative inland; none without a coastline. `forecast`:
-/// the uncorrected forecast's mean along the dive that ended here (from `Pilot::dive_under_way`), none without.
+/// the uncorrected forecast's mean along the dive that ended here (from `Pilot::dive_under_way`), none without; `shares`: of its sources,
+/// `extrapolated`: a value was borrowed, both at the middle of the dive.
 struct SurfacingHeard {
   model::Surfacing surfacing;
   std::optional<Metres> coast_distance;
   std::optional<Current> forecast{};
+  std::vector<SourceShare> shares{};
+  bool extrapolated{};
   friend bool operator==(const SurfacingHeard&, const SurfacingHeard&) = default;
 };
 struct FixRefused {

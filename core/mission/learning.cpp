@@ -213,6 +213,11 @@ void Learning::see_dive(const SurfacingSeen& seen, double dive_time) {
   dive.spread =
       std::hypot(water_->spread.si(), std::hypot(kForecastSpread, seen.dive->drift_known ? 0 : kUnknownDrift));
   errors_.see(dive);
+  sources_.see({dive.at, dive.at_s, water_->current.east.si() - seen.forecast->east.si(),
+                water_->current.north.si() - seen.forecast->north.si(), water_->spread.si(), seen.shares,
+                seen.extrapolated});
+  shares_ = seen.shares;
+  extrapolated_ = seen.extrapolated;
 }
 
 void Learning::see(const SurfacingSeen& seen) {
@@ -237,6 +242,8 @@ Learned Learning::learned() const {
   l.surface_spread = Seconds{surface_.spread()};
   l.rotation = rotation_;
   l.water = water_;
+  l.source_errors = sources_;
+  l.forecast_spread = sources_.spread(shares_, extrapolated_);
   if (guesses_.correct && errors_.seen() > 0) {
     ocean::LocalCorrection c;
     c.at = errors_.at();

@@ -10,6 +10,7 @@
 #include "core/mission/error_filter.hpp"
 #include "core/mission/estimate.hpp"
 #include "core/mission/mission.hpp"
+#include "core/mission/source_errors.hpp"
 #include "core/model/surfacing.hpp"
 #include "core/ocean/corrected.hpp"
 
@@ -80,6 +81,8 @@ struct SurfacingSeen {
   std::vector<model::AimLine> aims;  ///< of its `Waypoint:` lines, each waypoint once, with …
   std::vector<GeoPoint> aims_from;   ///< … the fix of the block that had it
   std::optional<Current> forecast;   ///< uncorrected forecast, mean along `dive`; none: not known
+  std::vector<SourceShare> shares;   ///< of its sources at the middle of the dive
+  bool extrapolated{};               ///< a value was borrowed there
   // the time before it
   std::optional<model::Surfacing> before;  ///< the last surfacing
   std::optional<Instant> dive_said;        ///< when the dialog said that the glider goes under
@@ -96,6 +99,8 @@ struct Learned {
   FrameRotation rotation;
   std::optional<MeasuredCurrent> water;  ///< of the dive just flown, none that is not trusted
   std::optional<ocean::LocalCorrection> correction;
+  SourceErrors source_errors;             ///< how far off each source of currents is
+  MetresPerSecond forecast_spread{0.10};  ///< of the uncorrected forecast where the glider is, per component
   friend bool operator==(const Learned&, const Learned&) = default;
 };
 
@@ -110,6 +115,7 @@ struct Learned {
 ///  - **Speed and heading bias**, and the **error of the forecast**. Over ground a glider moves with v = Û·ĥ + DAC: that
 ///    is how it makes its DAC, so v − DAC is where it believes to have headed. Then v − forecast − U0·ĥ is what
 ///    `ErrorFilter` takes apart.
+///  - **How far off each source is**: measured less forecast, with the shares of the sources (`SourceErrors`).
 ///  - **Believed speed**: the length of v − DAC, where the dialog does not print it.
 ///  - **Rotation**: `frame_rotation` over one mission of the glider.
 ///
@@ -147,6 +153,9 @@ class Learning {
   Guesses guesses_;
   Estimate stint_, surface_, believed_;
   ErrorFilter errors_;
+  SourceErrors sources_;
+  std::vector<SourceShare> shares_;  ///< of the last dive
+  bool extrapolated_{};
   // of one mission of the glider
   std::string mission_, number_;
   std::optional<GeoPoint> origin_;

@@ -11,9 +11,10 @@ namespace glidehelm::mission {
 
 namespace {
 
-constexpr double kPostFix = 60.0;  // s: from the resumed mission to the dive (slocum.md 4.6)
-constexpr double kTold = 0.02;     // a change of speed or times by this share is said
-constexpr double kToldTurn = 1.0;  // degrees
+constexpr double kPostFix = 60.0;     // s: from the resumed mission to the dive (slocum.md 4.6)
+constexpr double kTold = 0.02;        // a change of speed or times by this share is said
+constexpr double kToldTurn = 1.0;     // degrees
+constexpr double kToldSpread = 0.25;  // a change of a source's spread by this share is said
 
 bool differs(double a, double b) { return std::abs(a - b) > kTold * std::abs(b); }
 
@@ -47,6 +48,8 @@ void Pilot::begin_learning(const SurfacingHeard& e) {
   seen.dive_said = dived_at_;
   seen.dive = dive_under_way();
   seen.forecast = e.forecast;
+  seen.shares = e.shares;
+  seen.extrapolated = e.extrapolated;
   seen.at = e.surfacing;
   learning_before_ = learning_;
   seen_ = std::move(seen);
@@ -123,6 +126,14 @@ void Pilot::tell_learned() {
         fmt::format("speed through water {:.3f} m/s (to within {:.3f}), heading off by {:+.1f} deg (to within {:.1f})",
                     now.speed.si(), now.speed_spread.si(), in_degrees(now.heading_bias),
                     in_degrees(now.heading_bias_spread)));
+  for (const auto& name : now.source_errors.sources()) {
+    const double sigma = now.source_errors.spread(name).si();
+    if (std::abs(sigma - told_.source_errors.spread(name).si()) <= kToldSpread * sigma) continue;
+    say(Level::info, "source",
+        fmt::format("{} differs from what the glider measures by {:.2f} m/s in each component (one standard deviation)",
+                    name.empty() ? "the forecast" : "source '" + name + "'", sigma));
+    told_.source_errors = now.source_errors;
+  }
   if (times || first) told_.stint = now.stint, told_.surface = now.surface;
   if (speed || first) told_.speed = now.speed, told_.heading_bias = now.heading_bias;
 }

@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kFarOff = 3.0;          // standard deviations
 constexpr double kLeastFarOff = 1000.0;  // m
-constexpr double kForecastError = 0.10;  // m/s: of a forecast that nothing was measured against
 constexpr double kNoted = 0.1;           // of an interval (product.md 1), as are the next two
 constexpr double kPaged = 2.5;
 constexpr Seconds kPagedAt{14 * 3600.0};
@@ -39,7 +38,7 @@ void Pilot::expect_place() {
   const Ranked* best = stage_ == Stage::queued ? best_proven() : nullptr;
   if (best == nullptr) return;
   const double t = learned_.stint.count(), u = learned_.speed.si();
-  const double current = learned_.correction ? learned_.correction->spread.si() : kForecastError;
+  const double current = learned_.correction ? learned_.correction->spread.si() : learned_.forecast_spread.si();
   Expectation e;
   e.at = best->candidate.promise.next_surfacing;
   const auto& stints = best->candidate.plan.stints;

@@ -84,4 +84,10 @@ void SourceErrors::see(const CurrentResidual& r) {
   any_ = true;
 }
 
+std::vector<std::string> SourceErrors::sources() const {
+  std::vector<std::string> names;
+  for (const auto& known : known_) names.push_back(known.source);
+  return names;
+}
+
 }  // namespace glidehelm::mission

@@ -57,6 +57,8 @@ class SourceErrors {
   [[nodiscard]] MetresPerSecond spread(std::string_view source) const;
   /// σ of a mean: Σ share·σ. The prior without shares. Twice as much where a value is extrapolated (product.md 6).
   [[nodiscard]] MetresPerSecond spread(const std::vector<SourceShare>& shares, bool extrapolated = false) const;
+  /// Names of the sources that residuals were seen of, in the order of their first one.
+  [[nodiscard]] std::vector<std::string> sources() const;
   /// Degrees of freedom that residuals have given to a source, the forgotten ones taken off.
   [[nodiscard]] double freedom(std::string_view source) const;
   friend bool operator==(const SourceErrors&, const SourceErrors&) = default;

@@ -66,26 +66,29 @@ std::vector<Event> one_of_each() {
     r.lat_ddmm = "2860.000";
     return r;
   }();
-  std::vector<decltype(Event::what)> whats{
-      SurfacingHeard{full_surfacing(desk), Metres{-12.5}, Current{MetresPerSecond{0.1}, MetresPerSecond{0.2}}},
-      SurfacingHeard{desk.heard(-0.5, 0), std::nullopt, std::nullopt},
-      FixRefused{refusal_of},
-      WindowHeard{Seconds{235}},
-      WindowExtended{Seconds{300}},
-      DiveBegan{},
-      TransferHeard{"goto_l10.ma", true},
-      TransferFailed{"goto_l10.ma"},
-      ListReread{},
-      CandidateFound{full_candidate(desk)},
-      PlanningEnded{7, "no way"},
-      Judged{7, 2, test::verdict_on("goto_l10.ma", "bytes", "2 land"), ""},
-      Judged{7, 2, std::nullopt, "it died"},
-      EmissionEnded{EmissionEnded::Outcome::unknown, "sim01/t", "detail"},
-      FolderSeen{FolderSeen::Found::foreign, "goto_l10.ma"},
-      TimerFired{Timer::late_page, 12},
-      MissionChanged{{mission_text()}, true, "uid 1000"},
-      Restarted{EmissionEnded{EmissionEnded::Outcome::late, "sim01/t", ""}},
-      Restarted{}};
+  std::vector<decltype(Event::what)> whats{SurfacingHeard{full_surfacing(desk),
+                                                          Metres{-12.5},
+                                                          Current{MetresPerSecond{0.1}, MetresPerSecond{0.2}},
+                                                          {{"bay", 0.25}, {"globe", 0.75}},
+                                                          true},
+                                           SurfacingHeard{desk.heard(-0.5, 0), std::nullopt, std::nullopt},
+                                           FixRefused{refusal_of},
+                                           WindowHeard{Seconds{235}},
+                                           WindowExtended{Seconds{300}},
+                                           DiveBegan{},
+                                           TransferHeard{"goto_l10.ma", true},
+                                           TransferFailed{"goto_l10.ma"},
+                                           ListReread{},
+                                           CandidateFound{full_candidate(desk)},
+                                           PlanningEnded{7, "no way"},
+                                           Judged{7, 2, test::verdict_on("goto_l10.ma", "bytes", "2 land"), ""},
+                                           Judged{7, 2, std::nullopt, "it died"},
+                                           EmissionEnded{EmissionEnded::Outcome::unknown, "sim01/t", "detail"},
+                                           FolderSeen{FolderSeen::Found::foreign, "goto_l10.ma"},
+                                           TimerFired{Timer::late_page, 12},
+                                           MissionChanged{{mission_text()}, true, "uid 1000"},
+                                           Restarted{EmissionEnded{EmissionEnded::Outcome::late, "sim01/t", ""}},
+                                           Restarted{}};
   std::vector<Event> events;
   for (auto& what : whats) events.push_back({desk.now, std::move(what)});
   return events;
@@ -122,6 +125,19 @@ TEST_CASE("the names of events in the journal are what they were") {
   REQUIRE(events.size() == names.size());
   for (std::size_t i = 0; i < events.size(); ++i)
     CHECK(json::parse(event_json("sim01", events[i])).at("event") == names[i]);
+}
+
+TEST_CASE("a surfacing of before sources had shares in it is one without") {
+  const auto event = one_of_each().at(0);
+  auto older = json::parse(event_json("sim01", event));
+  REQUIRE(older.at("what").erase("shares") == 1);
+  REQUIRE(older.at("what").erase("extrapolated") == 1);
+  const auto read = event_from_json(older.dump());
+  REQUIRE(read);
+  auto wanted = event;
+  std::get<SurfacingHeard>(wanted.what).shares.clear();
+  std::get<SurfacingHeard>(wanted.what).extrapolated = false;
+  CHECK(read->event == wanted);
 }
 
 TEST_CASE("a surfacing of before there was a forecast in it is one without") {

@@ -129,6 +129,7 @@ struct Swimmer {
   double surface_s{900}, stint_s{14400};
   Current water{MetresPerSecond{0.1}, MetresPerSecond{-0.05}};
   std::optional<Dive> dive;
+  std::vector<SourceShare> shares{{"", 1}};
 
   Swimmer() {
     mission.frame_rotation = Radians{0};
@@ -155,6 +156,7 @@ struct Swimmer {
     seen.dive_said = resumed;
     seen.dive = dive;
     seen.forecast = Current{};
+    seen.shares = shares;
     learning.see(seen);
     before = seen.at;
     ++segment;
@@ -229,6 +231,32 @@ TEST_CASE("what was measured less what was forecast becomes the correction near 
   off.surface();
   off.surface();
   CHECK_FALSE(off.learning.learned().correction);
+}
+
+TEST_CASE(
+    "how far off a source is comes from the dives in its water, and what counts is the source that the glider is in") {
+  Swimmer s;
+  s.surface();
+  CHECK(s.learning.learned().forecast_spread.si() == SourceErrors::kPrior);
+  const auto fly = [&](const std::string& source, double error, int dives) {
+    s.shares = {{source, 1}};
+    for (int k = 0; k < dives; ++k) {
+      // Round the compass, so that no speed error of the glider explains it.
+      s.water = {MetresPerSecond{error * std::sin(2.0 * k)}, MetresPerSecond{error * std::cos(2.0 * k)}};
+      s.surface(30 + 20 * k);
+    }
+  };
+  fly("bay", 0.05, 20);
+  const auto in_the_bay = s.learning.learned();
+  fly("globe", 0.35, 20);
+  const auto outside = s.learning.learned();
+  CHECK(in_the_bay.source_errors.spread("bay").si() < SourceErrors::kPrior);
+  CHECK(in_the_bay.source_errors.spread("globe").si() == SourceErrors::kPrior);
+  CHECK(in_the_bay.forecast_spread == in_the_bay.source_errors.spread("bay"));
+  CHECK(outside.source_errors.spread("globe").si() > 1.5 * SourceErrors::kPrior);
+  CHECK(outside.source_errors.spread("bay").si() < SourceErrors::kPrior);
+  CHECK(outside.forecast_spread == outside.source_errors.spread("globe"));
+  CHECK(outside.source_errors.sources() == std::vector<std::string>{"bay", "globe"});
 }
 
 TEST_CASE("a current printed twice to the bit was not measured anew") {

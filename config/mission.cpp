@@ -60,6 +60,15 @@ Fields<Draft> goal_fields() {
   return f;
 }
 
+Fields<Draft> objective_fields() {
+  Fields<Draft> f;
+  f.time({"min_distance_at",
+          "be as near to the goal as can be at the last surfacing before this time; reached earlier is better still",
+          false, "the earliest arrival"},
+         &Draft::nearest_at);
+  return f;
+}
+
 Fields<Draft> start_fields() {
   Fields<Draft> f;
   f.latitude({"lat_deg", "latitude of the start", false, "the fix"}, &Draft::start_lat);
@@ -244,6 +253,7 @@ const Fields<Draft>& fields() {
     f.text({"glider_mission", "mission that must run on the glider; another one is not steered", false, "any"},
            &Draft::slocum_mission, kMi);
     f.section({"goal", "where to", true}, goal_fields());
+    f.section({"objective", "what makes a plan the better one"}, objective_fields());
     f.section({"start", "where from, for `plan` and `rehearse`; in service the fix decides"}, start_fields());
     f.section({"vehicle", "the glider as it is expected to fly"}, vehicle_fields());
     f.section({"schedule", "when it dives and surfaces"}, schedule_fields());

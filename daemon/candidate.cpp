@@ -123,6 +123,7 @@ double horizon_of(const mission::PlanningRequest& request) {
     const Seconds least = p.schedule.surfacing_time(1) + p.schedule.surface;
     return p.start.fix_s + std::max(request.horizon_wanted, least).count();
   }
+  if (const auto* least = std::get_if<planning::MinDistanceAt>(&p.objective)) return least->epoch_s;
   return p.start.fix_s + planning::automatic_horizon(p).count();
 }
 

@@ -55,6 +55,17 @@ void members(Departure& d, F&& f) {
 }
 inline nlohmann::json write(GridKind k) { return static_cast<int>(k); }
 inline void read(const nlohmann::json& j, GridKind& k) { values::read_enum(j, k, GridKind::triangular); }
+/// Null: the least time; else the epoch second of the least distance.
+inline nlohmann::json write(const Objective& o) {
+  const auto* least = std::get_if<MinDistanceAt>(&o);
+  return least != nullptr ? nlohmann::json(least->epoch_s) : nlohmann::json(nullptr);
+}
+inline void read(const nlohmann::json& j, Objective& o) {
+  if (j.is_null())
+    o = MinTime{};
+  else
+    o = MinDistanceAt{j.get<double>()};
+}
 template <class F>
 void members(LatticeChoice& l, F&& f) {
   f("neighbours", l.neighbours), f("radius", l.radius), f("grid", l.grid);
@@ -69,6 +80,7 @@ void members(Problem& p, F&& f) {
   f("believed_current", p.believed_current), f("horizon_s", p.horizon_s), f("coast_margin_m", p.coast_margin);
   f("headings", p.headings), f("cell_m", p.cell), f("seed", p.seed), f("lattice", p.lattice);
   f("sector_grid", p.sector_grid);
+  f("objective", p.objective);
 }
 }  // namespace glidehelm::planning
 

@@ -84,6 +84,7 @@ struct Mission {
   std::string slocum_mission;         ///< glider_mission: the .mi file that must be running; empty: any
   GeoPoint goal;                      ///< goal.lat_deg, goal.lon_deg
   Metres goal_radius{2000};           ///< goal.radius_m
+  std::optional<Instant> nearest_at;  ///< objective.min_distance_at; none: the earliest arrival
   std::optional<GeoPoint> start;      ///< start.lat_deg, start.lon_deg (plan and rehearse only)
   std::optional<Instant> start_time;  ///< start.time
 

@@ -9,6 +9,7 @@
 #include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 #include "core/mission/wording.hpp"
+#include "core/planning/flight.hpp"
 
 namespace glidehelm::mission {
 
@@ -367,6 +368,7 @@ planning::Problem Pilot::problem_now() const {
   p.seed = m.seed;
   p.lattice = m.lattice;
   p.sector_grid = m.sector_grid;
+  p.objective = planning::objective_at(m.nearest_at ? std::optional{epoch_seconds(*m.nearest_at)} : std::nullopt, p);
   return p;
 }
 

@@ -1,5 +1,6 @@
 #include "core/planning/astar.hpp"
 
+#include "core/planning/flight.hpp"
 #include "core/planning/lattice_search.hpp"
 #include "core/planning/searched_plan.hpp"
 #include "core/planning/way_headings.hpp"
@@ -8,6 +9,7 @@ namespace glidehelm::planning {
 
 Expected<Plan, PlanFailure> AStar::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                         const Budget& budget, const std::function<void(const Plan&)>& better) const {
+  if (wants_least_distance(problem)) return unexpected(only_least_time("astar"));
   return plan_by_search(problem, members, chart, budget, better, [&](const ocean::Ocean& ocean) -> Search {
     return [&](Purse& purse, Metres allowance) {
       const auto way =

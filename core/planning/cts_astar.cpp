@@ -60,7 +60,7 @@ CtsSearch search_finely(const Problem& problem, const ocean::Ocean& ocean, const
 CtsSearch search_far(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse,
                      const CtsSettings& settings) {
   auto found = search_finely(problem, ocean, chart, purse, settings);
-  if (arrives(found) || !found.exhausted || !found.stopped.horizon) return found;
+  if (arrives(found) || !found.exhausted || !found.stopped.horizon || wants_least_distance(problem)) return found;
   CtsSettings farther = settings;
   farther.cell = Metres{found.cell_m};
   farther.nearest = true;
@@ -81,9 +81,10 @@ Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members membe
   return plan_by_cts("cts-astar", HeadingSampling::uniform, problem, members, chart, budget, better);
 }
 
-Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& problem,
+Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& asked,
                                         Members members, const chart::Chart& chart, const Budget& budget,
                                         const std::function<void(const Plan&)>& better) {
+  const Problem problem = within_objective(asked);
   return plan_by_search(problem, members, chart, budget, better, [&](const ocean::Ocean& ocean) -> Search {
     return [&](Purse& purse, Metres allowance) {
       CtsSettings settings;

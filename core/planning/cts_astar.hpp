@@ -61,6 +61,10 @@ namespace glidehelm::planning {
 /// reached in time are not expanded, unless that is true of the start already; when the goal turns out not to be reached within
 /// the horizon, the search is done once more with them, for the nearest of all.
 ///
+/// **MinDistanceAt**: the nearest label at the last surfacing by then, or the earliest arrival before it. The search goes layer by layer, a
+/// cell has a label for each number of stints (the one nearest to the goal), and a stint may end in the cell that it began in: waiting
+/// is a choice like others. It sees all cells that can be reached: expansions go with cells times stints.
+///
 /// Complexity: at most one expansion per cell and re-opening; each costs M·4·steps current evaluations. No allocation, no
 /// virtual call and no text per expansion beyond the growth of two vectors; one indirect call per integration step of all
 /// headings. Memory: 4 bytes per cell, 56 per expanded or open label, 16 per open entry. At most `kMostLabels` labels; the

@@ -17,6 +17,7 @@ using ocean::Lanes;
 
 constexpr double kSmallestRadius = 6'335'439.0;  // of curvature of WGS84: makes distances lower bounds
 constexpr double kNever = 1e18;                  // seconds
+constexpr double kOrderInLayer = 1e-8;           // seconds per metre: less than a second round the Earth
 
 /// A surfacing that a cell is labelled with.
 struct Label {
@@ -51,8 +52,9 @@ class Search {
         goal_cos_{std::cos(goal_lat_)},
         speed_{problem.glider.horizontal_speed.si()},
         stint_{problem.schedule.stint.count()},
-        horizon_{problem.horizon_s - problem.start.fix_s},
+        horizon_{within_objective(problem).horizon_s - problem.start.fix_s},
         margin_{problem.coast_margin.si() + settings.allowance.si()},
+        at_stint_{wants_least_distance(problem) ? stints_within(within_objective(problem)) : 0},
         envelope_{speed_ + ocean.dive.fastest().si(), ocean.surface.fastest().si(), stint_,
                   problem.schedule.surface.count()},
         grid_{make_grid(settings.cell.si() > 0 ? settings.cell : cell_of(problem))},
@@ -61,7 +63,7 @@ class Search {
                                  problem.glider.horizontal_speed)},
         count_{std::clamp(problem.headings, 1, Lanes::kMax)},
         best_arrival_{std::min(kNever, settings.earlier_than_s - problem.start.fix_s)},
-        hopeless_{settings.nearest} {
+        hopeless_{settings.nearest || wants_least_distance(problem)} {
     if (settings.sampling == HeadingSampling::adaptive)
       adaptive_.emplace(problem.glider.horizontal_speed, problem.seed);
     for (int i = 0; i < count_; ++i) {
@@ -87,7 +89,9 @@ class Search {
     // middle holds it. Without that hope the start lies within the circle all the same.
     const double way = distance(a, goal_.centre).si();
     const double covered = horizon_ * std::max(envelope_.dive, envelope_.drift) + goal_.radius.si();
-    const double reach = 0.5 * std::clamp(covered, 1.02 * way + 2 * speed_ * stint_, 2e7);
+    // A least distance may lie behind the start, where a current carries to.
+    const double reach = layered() ? std::min(0.5 * way + covered, 1e7)
+                                   : 0.5 * std::clamp(covered, 1.02 * way + 2 * speed_ * stint_, 2e7);
     return SearchGrid{lat, lon, reach, cell.si(), ocean_.dive.coverage()};
   }
 
@@ -96,10 +100,11 @@ class Search {
     start.lat = problem_.start.fix.lat.radians();
     start.lon = problem_.start.fix.lon.radians();
     start.margin = static_cast<float>(margin_in_force(start.lat, start.lon) - kSlack);
-    nearest_distance_ = least_distance(start.lat, start.lon);
+    parent_distance_ = least_distance(start.lat, start.lon);
+    nearest_distance_ = layered() ? kNever : parent_distance_;
     const double to_go = distance(problem_.start.fix, goal_.centre).si() - goal_.radius.si();
     hopeless_ =
-        hopeless_ || envelope_.least_time_from_fix(nearest_distance_ - goal_.radius.si(), problem_.schedule) > horizon_;
+        hopeless_ || envelope_.least_time_from_fix(parent_distance_ - goal_.radius.si(), problem_.schedule) > horizon_;
     add(start, false);  // belongs to no cell: a stint may come back to where it began
     heap_.push_back({0.0, 0});
     if (to_go <= 0) arrive(0, 0, -1, 0);
@@ -189,7 +194,7 @@ class Search {
 
   void expand(std::int32_t index) {
     const Label label = labels_[static_cast<std::size_t>(index)];
-    if (dives(label.stints) >= horizon_) {
+    if (dives(label.stints) >= horizon_ || (layered() && label.stints >= at_stint_)) {
       stopped_.horizon = true;
       return;
     }
@@ -382,7 +387,7 @@ class Search {
       const auto cell = grid_.cell(lanes_.lat[k], lanes_.lon[k]);
       if (cell < 0)
         stopped_.horizon = true;  // the box holds everything that is of use in time; the field's edge is a wall before
-      else if (cell != parent_cell)
+      else if (cell != parent_cell || layered())
         offer(cell, index, k, stints, repeat);
       else
         move_lane(k, static_cast<std::size_t>(kept++));
@@ -393,9 +398,13 @@ class Search {
   /// Labels a cell with lane k when that is better than what it has.
   void offer(std::int32_t cell, std::int32_t parent, std::size_t k, int stints, int repeats) {
     auto& best = best_of_cell_[static_cast<std::size_t>(cell)];
-    if (best >= 0 && labels_[static_cast<std::size_t>(best)].stints < stints) return;
+    if (best >= 0 && labels_[static_cast<std::size_t>(best)].stints < stints) {
+      if (!layered()) return;
+      best = -1;  // of a layer that is done
+    }
     const double d = least_distance(lanes_.lat[k], lanes_.lon[k]);
-    const double f = surfaced(stints) + envelope_.least_time(d - goal_.radius.si());
+    const double f = layered() ? surfaced(stints) + d * kOrderInLayer
+                               : surfaced(stints) + envelope_.least_time(d - goal_.radius.si());
     if (f >= best_arrival_) return;
     const Label label{lanes_.lat[k],
                       lanes_.lon[k],
@@ -424,7 +433,7 @@ class Search {
     } else {
       best = index = add(label, false);
     }
-    if (d < nearest_distance_) note_nearest(d, index);
+    if (d < nearest_distance_ && (!layered() || stints == at_stint_)) note_nearest(d, index);
     heap_.push_back({f, index});
     std::push_heap(heap_.begin(), heap_.end(), after);
   }
@@ -434,6 +443,8 @@ class Search {
     if (adaptive_) drawn_.push_back(draw_[label.heading]);
     return static_cast<std::int32_t>(labels_.size()) - 1;
   }
+  /// Layer by layer of stints: a cell has a label of its own in each.
+  [[nodiscard]] bool layered() const { return at_stint_ > 0; }
   void note_nearest(double d, std::int32_t index) {
     nearest_distance_ = d;
     nearest_ = index;
@@ -471,6 +482,7 @@ class Search {
   vehicle::Disc goal_;
   double goal_lat_, goal_lon_, goal_cos_;
   double speed_, stint_, horizon_, margin_;
+  int at_stint_;  ///< stints of a way of least distance; 0 under MinTime
   Envelope envelope_;
   SearchGrid grid_;
   std::vector<std::int32_t> best_of_cell_;  ///< label of each cell, −1 none

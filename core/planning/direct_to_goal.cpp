@@ -4,9 +4,10 @@
 
 namespace glidehelm::planning {
 
-Expected<Plan, PlanFailure> DirectToGoal::plan(const Problem& problem, Members members, const chart::Chart& chart,
+Expected<Plan, PlanFailure> DirectToGoal::plan(const Problem& asked, Members members, const chart::Chart& chart,
                                                const Budget&, const std::function<void(const Plan&)>& better) const {
   if (members.empty()) return unexpected(PlanFailure{NoPlan::no_forecast, "no forecast is given"});
+  const Problem problem = within_objective(asked);
   if (auto wrong = check_ends(problem, members.front(), chart)) return unexpected(*wrong);
   const auto goal = disc_of(problem);
   const auto flown = vehicle::fly_helm(

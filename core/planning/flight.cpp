@@ -126,6 +126,12 @@ bool better_than(const Plan& a, const Plan& b) {
 
 bool wants_least_distance(const Problem& problem) { return std::holds_alternative<MinDistanceAt>(problem.objective); }
 
+Objective objective_at(std::optional<double> epoch_s, const Problem& problem) {
+  const double first_s = problem.start.fix_s + problem.schedule.surfacing_time(0).count();
+  if (!epoch_s || *epoch_s < first_s) return MinTime{};
+  return MinDistanceAt{*epoch_s};
+}
+
 Problem within_objective(const Problem& problem) {
   Problem within = problem;
   if (const auto* least = std::get_if<MinDistanceAt>(&problem.objective))

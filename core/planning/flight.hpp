@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,8 @@ bool better_than(const Plan& a, const Plan& b);
 
 /// True under MinDistanceAt.
 bool wants_least_distance(const Problem& problem);
+/// MinDistanceAt that time, or MinTime when there is none or no stint of the problem surfaces by then: that time has passed.
+Objective objective_at(std::optional<double> epoch_s, const Problem& problem);
 /// The problem with its horizon at the instant of MinDistanceAt where that is earlier; as it is under MinTime.
 Problem within_objective(const Problem& problem);
 /// How many stints surface by the horizon.

@@ -12,8 +12,9 @@
 
 namespace glidehelm::planning {
 
-Expected<Plan, PlanFailure> Ladder::plan(const Problem& problem, Members members, const chart::Chart& chart,
+Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, const chart::Chart& chart,
                                          const Budget& budget, const std::function<void(const Plan&)>& better) const {
+  const Problem problem = within_objective(asked);
   Purse purse{budget};
   std::vector<Plan> found;
   std::optional<Plan> best;

@@ -147,9 +147,10 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
   return best;
 }
 
-Expected<Plan, PlanFailure> RefinedCts::plan(const Problem& problem, Members members, const chart::Chart& chart,
+Expected<Plan, PlanFailure> RefinedCts::plan(const Problem& asked, Members members, const chart::Chart& chart,
                                              const Budget& budget,
                                              const std::function<void(const Plan&)>& better) const {
+  const Problem problem = within_objective(asked);
   auto searched = CtsAStar{}.plan(problem, members, chart, budget, better);
   if (!searched) return searched;
   Purse purse{budget};

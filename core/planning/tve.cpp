@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/planning/flight.hpp"
 #include "core/planning/searched_plan.hpp"
 #include "core/planning/smoothing.hpp"
 #include "core/planning/travel_time.hpp"
@@ -88,6 +89,7 @@ std::vector<WayPoint> smooth_way(const std::vector<WayPoint>& way, const Problem
 
 Expected<Plan, PlanFailure> Tve::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                       const Budget& budget, const std::function<void(const Plan&)>& better) const {
+  if (wants_least_distance(problem)) return unexpected(only_least_time(name()));
   return plan_by_search(problem, members, chart, budget, better, [&](const ocean::Ocean& ocean) -> Search {
     return [&](Purse& purse, Metres allowance) {
       return search_and_smooth(method_, problem, ocean, chart, purse, allowance);

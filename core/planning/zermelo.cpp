@@ -12,6 +12,7 @@ namespace glidehelm::planning {
 
 Expected<Plan, PlanFailure> Zermelo::plan(const Problem& problem, Members members, const chart::Chart& chart,
                                           const Budget& budget, const std::function<void(const Plan&)>& better) const {
+  if (wants_least_distance(problem)) return unexpected(only_least_time("zermelo"));
   if (members.empty()) return unexpected(PlanFailure{NoPlan::no_forecast, "no forecast is given"});
   const auto& ocean = members.front();
   if (auto wrong = check_ends(problem, ocean, chart)) return unexpected(*wrong);

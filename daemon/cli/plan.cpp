@@ -30,6 +30,12 @@ Json place(GeoPoint p, double t_s) {
 }
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
+Json objective_json(const planning::Objective& objective) {
+  const auto* least = std::get_if<planning::MinDistanceAt>(&objective);
+  if (!least) return {{"kind", "min_time"}};
+  return {{"kind", "min_distance_at"}, {"time", utc_text(instant_at(least->epoch_s), true)}};
+}
+
 Json inputs_json(const Case& c) {
   const auto& p = c.request.problem;
   const auto& goal = std::get<planning::PointGoal>(p.goal);
@@ -45,6 +51,7 @@ Json inputs_json(const Case& c) {
             {"lat_deg", goal.at.lat.degrees()},
             {"lon_deg", goal.at.lon.degrees()},
             {"radius_m", goal.radius.si()}}},
+          {"objective", objective_json(p.objective)},
           {"outside_time", c.mission.currents.outside_time == ocean::OutsideTime::hold    ? "hold"
                            : c.mission.currents.outside_time == ocean::OutsideTime::cycle ? "cycle"
                                                                                           : "forbid"},

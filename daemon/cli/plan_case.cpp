@@ -8,6 +8,7 @@
 
 #include "core/base/utc.hpp"
 #include "core/ocean/freshness.hpp"
+#include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
 #include "daemon/candidate.hpp"
 
@@ -115,6 +116,8 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.at_end = m.at_end;
   r.stamp = *at;
   r.horizon_wanted = m.horizon.value_or(Seconds{0});
+  r.problem.objective =
+      planning::objective_at(m.nearest_at ? std::optional{epoch_seconds(*m.nearest_at)} : std::nullopt, r.problem);
   r.problem.horizon_s = daemon::horizon_of(r);
   return c;
 }

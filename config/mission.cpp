@@ -159,11 +159,12 @@ Fields<Draft> planning_fields() {
                                                                  {"ztve", "ztve"},
                                                                  {"zastar-tve", "zastar-tve"},
                                                                  {"cts-astar-refined", "cts-astar-refined"},
+                                                                 {"rrt", "rrt"},
                                                                  {"optimization", "optimization"},
                                                                  {"iterative-optimization", "iterative-optimization"},
                                                                  {"zermelo", "zermelo"},
                                                                  {"best", "best"}};
-  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods, {"rrt"});
+  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods);
   f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
                  &Draft::cell, kKilometre, above(0, 1000), "auto");

@@ -7,25 +7,16 @@
 #include "core/planning/ladder.hpp"
 #include "core/planning/optimization.hpp"
 #include "core/planning/refined_cts.hpp"
+#include "core/planning/rrt.hpp"
 #include "core/planning/tve.hpp"
 #include "core/planning/zermelo.hpp"
 
 namespace glidehelm::planning {
 
 std::vector<std::string> method_names() {
-  return {"direct",
-          "astar",
-          "cts-astar",
-          "abs-cts-astar",
-          "tve",
-          "astar-tve",
-          "ztve",
-          "zastar-tve",
-          "cts-astar-refined",
-          "optimization",
-          "iterative-optimization",
-          "zermelo",
-          "best"};
+  return {"direct",  "astar",      "cts-astar",         "abs-cts-astar", "tve",          "astar-tve",
+          "ztve",    "zastar-tve", "cts-astar-refined", "rrt",           "optimization", "iterative-optimization",
+          "zermelo", "best"};
 }
 
 std::unique_ptr<const Planner> planner_named(std::string_view name) {
@@ -38,6 +29,7 @@ std::unique_ptr<const Planner> planner_named(std::string_view name) {
   if (name == "ztve") return std::make_unique<Tve>(Tve::Method::ztve);
   if (name == "zastar-tve") return std::make_unique<Tve>(Tve::Method::zastar_tve);
   if (name == "cts-astar-refined") return std::make_unique<RefinedCts>();
+  if (name == "rrt") return std::make_unique<Rrt>();
   if (name == "optimization") return std::make_unique<Optimization>();
   if (name == "iterative-optimization") return std::make_unique<IterativeOptimization>();
   if (name == "zermelo") return std::make_unique<Zermelo>();

@@ -47,8 +47,8 @@ void add_plan(CLI::App& app, Action& action) {
   auto* verb = app.add_subcommand("plan", "Plan a mission once, offline");
   verb->add_option("MISSION", o->options.mission, "Mission file (schema glidehelm/mission/v1)")->required();
   verb->add_option("--method", o->options.method,
-                   "direct, astar, cts-astar, abs-cts-astar, cts-astar-refined, optimization, iterative-optimization, "
-                   "zermelo or best (default: the mission's)");
+                   "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, rrt, "
+                   "optimization, iterative-optimization, zermelo or best (default: the mission's)");
   auto* from = verb->add_option("--from", o->from, "LAT,LON of the fix, degrees (default: the mission's start)");
   auto* at = verb->add_option("--at", o->at, "UTC of the fix (default: the mission's start time, else now)");
   auto* water = verb->add_option("--water", o->water, "E,N: measured current that the glider believes, m/s");
@@ -93,8 +93,8 @@ void add_rehearse(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 10000));
   verb->add_option("--method", r.plan.method,
-                   "direct, astar, cts-astar, abs-cts-astar, cts-astar-refined, optimization, iterative-optimization, "
-                   "zermelo or best (default: the mission's)");
+                   "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, rrt, "
+                   "optimization, iterative-optimization, zermelo or best (default: the mission's)");
   auto* from = verb->add_option("--from", o->from, "LAT,LON of the start, degrees (default: the mission's start)");
   auto* at = verb->add_option("--at", o->at, "UTC of the start (default: the mission's start time, else now)");
   verb->add_option("--delays", r.delays_h, "Hours by which the departure is put off, e.g. 0,6,12 (default: 0)")

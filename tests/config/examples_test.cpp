@@ -142,7 +142,7 @@ TEST_CASE("the schema refuses what the reader refuses in one key") {
       "vehicle: {horizontal_speed_m_per_s: 0}",
       "vehicle: {dive_depth_m: }",
       "planning: {cell_km: atuo}",
-      "planning: {method: rrt}",
+      "planning: {method: prm}",
       "after_goal: leg-3",
       "start: {time: yesterday}",
       "safety: {keep_in: [[{lat_deg: 1, lon_deg: 2}]]}",

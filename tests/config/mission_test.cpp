@@ -19,7 +19,7 @@ namespace {
 
 /// The methods of this version, as a complaint lists them.
 const std::string kMethods =
-    "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, optimization, "
+    "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, rrt, optimization, "
     "iterative-optimization, zermelo, best";
 
 Lines errors(const std::string& yaml) { return errors_of(read_mission(yaml, "m.yaml", no_files())); }
@@ -193,9 +193,8 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
        {"7:37 schedule.half_cycles: both half_cycles and stint_h; allowed: one of the two"}},
       {"schedule: {half_cycles: 900}\n",
        {"7:25 schedule.half_cycles: gives a stint of 307.62 h; allowed: a stint of 0.1 to 72 h"}},
-      {"planning: {method: rrt}\n",
-       {"7:20 planning.method: not available in this version; available: " + kMethods + "; found rrt"}},
-      {"planning: {method: rtr}\n", {"7:20 planning.method: not one of the words; found rtr; allowed: " + kMethods}},
+      {"planning: {method: rtr}\n",
+       {"7:20 planning.method: not one of the words; found rtr; allowed: " + kMethods + "; did you mean rrt?"}},
       {"planning: {method: cts_astar}\n",
        {"7:20 planning.method: not one of the words; found cts_astar; allowed: " + kMethods +
         "; did you mean cts-astar?"}},

@@ -7,7 +7,7 @@ using namespace glidehelm;
 TEST_CASE("every name of the list makes a planner that answers to it, and no other name does") {
   CHECK(planning::method_names() == std::vector<std::string>{"direct", "astar", "cts-astar", "abs-cts-astar", "tve",
                                                              "astar-tve", "ztve", "zastar-tve", "cts-astar-refined",
-                                                             "optimization", "iterative-optimization", "zermelo",
+                                                             "rrt", "optimization", "iterative-optimization", "zermelo",
                                                              "best"});
   for (const auto& name : planning::method_names()) {
     const auto planner = planning::planner_named(name);

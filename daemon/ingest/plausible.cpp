@@ -156,7 +156,9 @@ std::string unwritten_end(const ocean::Grid& grid) {
           const float* const other = grid.values.data() + 2 * (neighbour * depths + z) * level + side;
           for (std::size_t way = 0; way < 2; ++way)
             for (const bool last : {true, false})
-              if (const auto found = zero_lines(here, other, ways[way], last); found > 0) {
+              // A component that is zero all over may be one at rest, unless nothing comes after it.
+              if (const auto found = zero_lines(here, other, ways[way], last);
+                  found > 0 && (found < ways[way].count || t + 1 == times)) {
                 const std::string where = way == 0 ? (last ? "northernmost" : "southernmost")
                                           : last   ? "easternmost"
                                                    : "westernmost";

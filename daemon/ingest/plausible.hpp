@@ -21,7 +21,7 @@ namespace glidehelm::ingest {
 Result<Done> make_plausible(ocean::Grid& grid, std::vector<std::string>& warnings);
 
 /// What a writer that died inside a time leaves: rows (or columns) at an end of one level that are exactly zero in one component, all of
-/// them, where the time before or after has numbers at 16 nodes or more. In words, with the place; empty when there is none. Land
+/// them, where the time before or after has numbers at 16 nodes or more; at the last time also a component that is zero all over. In words, with the place; empty when there is none. Land
 /// that is zero at every time is none of it, and slack water that a tide rounds to zero does not fill whole rows from the edge of
 /// the area inwards. With one time there is nothing to compare with. Linear in the nodes.
 std::string unwritten_end(const ocean::Grid& grid);

@@ -60,7 +60,9 @@ TEST_CASE("every method is held against the bound, and none beats it") {
     earliest = std::min(earliest, time);
     if (plan["asked"] == "best") best = time;
   }
-  CHECK(best == earliest);
+  // `best` polishes the ways of its searches; `optimization` ends in the same valley with another kernel. Neither stops at the very
+  // bottom: a way is polished until a round wins less than 1e-6 of it.
+  CHECK(best <= earliest * (1 + 1e-6));
   CHECK(std::filesystem::exists(folder.path / "page.html"));
   // The page is not written over.
   CHECK(compare(options).code == 2);

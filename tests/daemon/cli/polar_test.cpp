@@ -52,7 +52,7 @@ TEST_CASE("the polar is written as numbers and as a picture, and says what the t
   CHECK(svg.find("nan") == std::string::npos);
 }
 
-TEST_CASE("the polar of a mission is that of its body; without one a note says so") {
+TEST_CASE("the polar of a mission is that of its body and without one a note says so") {
   test::TempFolder folder;
   const std::string path = folder.path / "m.yaml";
   std::ofstream{path} << test::six_lines("vehicle: {force_balance: {drag: 0.2}}\n");

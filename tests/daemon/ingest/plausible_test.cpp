@@ -92,7 +92,7 @@ TEST_CASE("a time that ends in zeros was not written to its end, wherever the wr
         CHECK(north.find(std::to_string(rows) + " northernmost of 12 rows is exactly zero at 1970-01-01T0" +
                          std::to_string(time)) != std::string::npos);
         CHECK_FALSE(unwritten_end(sea(time, side, [&](double lat, double) { return lat < rows; })).empty());
-        CHECK_FALSE(unwritten_end(sea(time, side, [&](double, double lon) { return lon >= 20 - rows; })).empty());
+        CHECK_FALSE(unwritten_end(sea(time, side, [&](double, double lon) { return lon >= 19 - rows; })).empty());
       }
   // All over zero at the first time: a component at rest.
   CHECK(unwritten_end(sea(0, 1, [](double, double) { return true; })).empty());

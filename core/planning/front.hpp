@@ -69,6 +69,8 @@ class Front {
   [[nodiscard]] std::size_t evaluations() const { return evaluations_ + walk_.evaluations(); }
 
  private:
+  static constexpr double kFinest = 0.15;  ///< of the spacing: edges beside coasts
+
   void move(ocean::FieldRef field, double speed, double t_s, double dt, std::span<Marker* const> moving);
   void graze(ocean::FieldRef field, double speed, double t_s, double dt);
   [[nodiscard]] bool water_between(const Marker& a, const Marker& b) const;

@@ -57,6 +57,9 @@ class Pilot {
   [[nodiscard]] bool watches_folder() const;
 
  private:
+  static constexpr Seconds kEmitBeforeDeadline{30};  // product.md 4.6
+  static Tick later(Tick t, Seconds dt) { return t + std::chrono::duration_cast<Tick::duration>(dt); }
+
   struct Ranked {
     Candidate candidate;
     enum class Proof { none, asked, accepted, refused } proof{Proof::none};

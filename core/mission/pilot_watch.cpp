@@ -21,8 +21,6 @@ constexpr Seconds kAfterNote{60};  // a page follows a note, never the other way
 constexpr double kSameDive =
     0.25;  // of a stint: a call that much off its time ended another dive than the one promised
 
-Tick later(Tick t, Seconds dt) { return t + std::chrono::duration_cast<Tick::duration>(dt); }
-
 }  // namespace
 
 /// The answer to this surfacing is decided: what it promises is expected.

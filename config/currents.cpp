@@ -17,19 +17,6 @@ using mission::OutsideTime;
 constexpr int kMostFields = 16;
 
 Range any_number() { return {}; }
-Range from_to(double low, double high) {
-  Range range;
-  range.low = low;
-  range.high = high;
-  return range;
-}
-Range above_zero(double high) {
-  Range range;
-  range.low = 0;
-  range.high = high;
-  range.low_open = true;
-  return range;
-}
 
 /// A parameter of a kind: where it stands, and its value when the file leaves it out.
 struct Parameter {
@@ -176,10 +163,9 @@ const Fields<AnalyticDraft>& analytic_fields() {
     Fields<A> f;
     f.word({"kind", "which field", true}, &A::kind, kinds);
     f.section({"origin", "position of x = y = 0", true}, origin);
-    f.number({"length_scale_m", "L: metres to one unit of x and y", true}, &A::length_scale, 1, above_zero(1e7));
-    f.number({"speed_scale_m_per_s", "V: speed to one unit of (u, v)", true}, &A::speed_scale, 1, above_zero(5));
-    f.maybe_number({"time_scale_s", "T: seconds to one unit of time", false, "L/V"}, &A::time_scale, 1,
-                   above_zero(1e10));
+    f.number({"length_scale_m", "L: metres to one unit of x and y", true}, &A::length_scale, 1, above(0, 1e7));
+    f.number({"speed_scale_m_per_s", "V: speed to one unit of (u, v)", true}, &A::speed_scale, 1, above(0, 5));
+    f.maybe_number({"time_scale_s", "T: seconds to one unit of time", false, "L/V"}, &A::time_scale, 1, above(0, 1e10));
     f.time({"t0", "when the time of the field is 0", false, "the start time"}, &A::t0);
     f.flag({"south", "both components change sign, as on the southern hemisphere (Thesis 5.4–5.5)"}, &A::south);
     f.custom({"params", "parameters of the kind; in brackets the value when left out"}, params_fields().shape(), "",

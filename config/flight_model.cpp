@@ -13,13 +13,6 @@ using vehicle::WaterLayer;
 
 constexpr double kDegree = kPi / 180, kLitre = 1e-3, kCubicCentimetre = 1e-6;
 
-Range from_to(double low, double high) {
-  Range range;
-  range.low = low;
-  range.high = high;
-  return range;
-}
-
 Fields<Trim> trim_fields() {
   Fields<Trim> f;
   f.number({"pitch_down_deg", "how far the nose points down in a dive"}, &Trim::pitch_down, kDegree, from_to(1, 89));

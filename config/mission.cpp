@@ -30,18 +30,6 @@ struct Draft : Mission {
   AreasDraft inside, outside;
 };
 
-Range from_to(double low, double high) {
-  Range range;
-  range.low = low;
-  range.high = high;
-  return range;
-}
-Range above(double low, double high) {
-  Range range = from_to(low, high);
-  range.low_open = true;
-  return range;
-}
-
 bool matches_next(std::string_view text) { return text.substr(0, 5) == "next " && kName.matches(text.substr(5)); }
 bool matches_mi(std::string_view text) {
   return text.size() > 3 && text.size() <= 8 + 3 && text.substr(text.size() - 3) == ".mi" &&
@@ -296,12 +284,12 @@ void check_vehicle(const Draft& d, Reading& reading) {
 
 /// Speed and glide angle: as they are given, or the means of the body over the yo.
 void resolve_speed(Draft& d, Reading& reading) {
-  d.horizontal_speed = d.speed_given.value_or(Mission{}.horizontal_speed);
-  d.glide_angle = d.glide_angle_given.value_or(Mission{}.glide_angle);
-  if (!d.flight_model || d.climb_to >= d.dive_depth) {
-    if (!d.flight_model) d.speed_given = d.horizontal_speed, d.glide_angle_given = d.glide_angle;
+  if (!d.flight_model) {
+    d.speed_given = d.horizontal_speed = d.speed_given.value_or(Mission{}.horizontal_speed);
+    d.glide_angle_given = d.glide_angle = d.glide_angle_given.value_or(Mission{}.glide_angle);
     return;
   }
+  if (!reading.problems.empty()) return;  // of a body that is described wrongly nothing follows
   const auto means =
       yo_means(d.flight_model->hull, d.flight_model->trim, d.flight_model->column(), d.climb_to, d.dive_depth);
   if (!means) return reading.complain("vehicle.force_balance", means.error());

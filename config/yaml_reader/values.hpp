@@ -24,6 +24,11 @@ struct Range {
   [[nodiscard]] std::string text() const;
 };
 
+/// Both ends are allowed.
+inline Range from_to(double low, double high) { return {low, high}; }
+/// The lower end itself is not allowed.
+inline Range above(double low, double high) { return {low, high, true}; }
+
 /// A form of text: the regular expression of the JSON Schema, the words of a message, and the same as code (a regular
 /// expression engine may exhaust the stack on hostile text).
 struct Pattern {

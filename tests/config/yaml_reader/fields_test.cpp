@@ -38,13 +38,6 @@ struct Thing {
   std::vector<Inner> inners;
 };
 
-Range from_to(double low, double high) {
-  Range range;
-  range.low = low;
-  range.high = high;
-  return range;
-}
-
 Fields<Thing> thing_fields() {
   Fields<Inner> inner;
   inner.text({"label", "a label", true}, &Inner::label).whole({"count", "how many"}, &Inner::count, from_to(0, 9));

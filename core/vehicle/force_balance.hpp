@@ -62,7 +62,7 @@ MetresPerSecond float_speed(const Hull& hull, double net_buoyancy_n, double dens
 /// How a glider is trimmed.
 struct Trim {
   Radians pitch_down{degrees(26)}, pitch_up{degrees(26)};
-  double pumped_down_m3{-230e-6}, pumped_up_m3{230e-6};  ///< ΔV_bp of dives and climbs
+  double pumped_down_m3{-230 * 1e-6}, pumped_up_m3{230 * 1e-6};  ///< ΔV_bp of dives and climbs
   friend bool operator==(const Trim&, const Trim&) = default;
 };
 

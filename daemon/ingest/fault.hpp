@@ -10,7 +10,7 @@ namespace glidehelm::ingest {
 /// Why a file is refused: what, where in the file, what is allowed.
 struct Fault {
   std::string what;
-  bool library{};  ///< the library could not read: of a remote address, perhaps not now
+  bool by_library{};  ///< the library could not read: of a remote address, perhaps not now
   bool
       alone{};  ///< it says nothing about the file by itself: others beside it (a grid, the other component) would help
   friend bool operator==(const Fault&, const Fault&) = default;

@@ -80,15 +80,15 @@ Expected<Part, AddressFault> read_address(const std::string& address, const Unit
   auto opened = NetcdfFile::open_address(address);
   if (!opened) return passing(opened.error().what);
   const auto file = one_member(std::move(opened), options.member);
-  if (!file) return unexpected(AddressFault{file.error().what, file.error().library});
+  if (!file) return unexpected(AddressFault{file.error().what, file.error().by_library});
   auto part = read_open_file(address, *file, Sha256{}, units, options);
-  if (!part) return unexpected(AddressFault{part.error().what, part.error().library});
+  if (!part) return unexpected(AddressFault{part.error().what, part.error().by_library});
 
   const auto again = one_member(NetcdfFile::open_address(address), options.member);
   if (!again) return passing(again.error().what);
   options.only_time_s = part->grid.axes.times_s.back();
   const auto last = read_open_file(address, *again, Sha256{}, units, options);
-  if (!last && last.error().library) return passing(last.error().what);
+  if (!last && last.error().by_library) return passing(last.error().what);
   if (!same_header(*file, *again) || !last || !same_last_time(part->grid, last->grid))
     return passing("it changed while it was read: it is still being written");
   part->grid.facts.sources.front().hash = hash_of(part->grid);

@@ -59,7 +59,7 @@ Look look_at(const NetcdfFile& file, const ReadOptions& options) {
 }
 
 Unexpected<Fault> named(const std::string& name, const Fault& what) {
-  return unexpected(Fault{name + ": " + what.what, what.library, what.alone});
+  return unexpected(Fault{name + ": " + what.what, what.by_library, what.alone});
 }
 
 /// The set as it is read: grid files stay open to the end.

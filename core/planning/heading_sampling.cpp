@@ -79,18 +79,6 @@ void resample(std::span<const double> weights, double r, std::span<int> chosen) 
   }
 }
 
-Draws::Draws(std::uint64_t seed, std::uint64_t stream) : state_{seed * 0x9e3779b97f4a7c15ULL} {
-  state_ ^= static_cast<std::uint64_t>(next() * 0x1p53);  // mixes the seed before the stream is added
-  state_ += stream * 0xd1342543de82ef95ULL;
-}
-
-double Draws::next() {
-  std::uint64_t z = state_ += 0x9e3779b97f4a7c15ULL;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-  return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
 void repair_duplicates(std::span<double> angles, Draws& draws) {
   const std::size_t n = angles.size();
   if (n == 0) return;

@@ -6,6 +6,7 @@
 
 #include "core/base/current.hpp"
 #include "core/base/units.hpp"
+#include "core/planning/draws.hpp"
 
 /// Which headings a search tries at a surfacing.
 namespace glidehelm::planning {
@@ -30,16 +31,6 @@ CourseWeights speed_weights(double first, double speed_m_per_s, const Current& c
 /// m = 0 … M − 1 with M = chosen.size() and r in [0, 1). Index i comes ⌊M·w⌋ or ⌈M·w⌉ times. O(weights + M). Weights add
 /// up to 1.
 void resample(std::span<const double> weights, double r, std::span<int> chosen);
-
-/// Numbers in [0, 1) that depend on seed, stream and position alone (SplitMix64).
-class Draws {
- public:
-  Draws(std::uint64_t seed, std::uint64_t stream);
-  double next();
-
- private:
-  std::uint64_t state_;
-};
 
 /// Duplicates replaced as in Thesis 4.18–4.19: one of them stays, the others become uniform draws between the midpoints to the
 /// neighbouring values. `angles`: ascending, within one turn; the circle closes. Afterwards ascending, but for a turn, and all

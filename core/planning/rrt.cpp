@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/planning/draws.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/mean_motion.hpp"
 #include "core/planning/searched_plan.hpp"
@@ -23,22 +24,6 @@ constexpr double kBias = 0.1;          // share of draws that are the other tree
 constexpr double kWider = 0.5;         // of the way, beyond start and goal on all sides
 constexpr std::size_t kFlown = 3;      // ways
 constexpr double kSameCurrent = 1e-3;  // m/s
-
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers everywhere.
-class Generator {
- public:
-  explicit Generator(std::uint64_t seed) : state_{seed} {}
-  /// From 0 to below 1.
-  double draw() {
-    std::uint64_t z = state_ += 0x9E3779B97F4A7C15ULL;
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 struct Place {
   double lat{}, lon{};  ///< radians; longitudes run on
@@ -103,7 +88,7 @@ class Growth {
         motion_{problem, ocean},
         goal_{disc_of(problem)},
         box_{box_of(problem, ocean)},
-        random_{problem.seed},
+        random_{problem.seed, 0},
         margin_{(problem.coast_margin + allowance).si()},
         longest_{std::min((problem.glider.horizontal_speed * problem.schedule.stint).si(),
                           distance(problem.start.fix, goal_.centre).si() / 6)} {
@@ -160,8 +145,8 @@ class Growth {
 
   /// Random(towards).
   Place place(Place towards) {
-    if (random_.draw() < kBias) return towards;
-    const double up = random_.draw(), across = random_.draw();
+    if (random_.next() < kBias) return towards;
+    const double up = random_.next(), across = random_.next();
     return {box_.south + up * (box_.north - box_.south), box_.west + across * (box_.east - box_.west)};
   }
 
@@ -274,7 +259,7 @@ class Growth {
   MeanMotion motion_;
   vehicle::Disc goal_;
   Box box_;
-  Generator random_;
+  Draws random_;
   double margin_, longest_;
   double start_s_{};        ///< epoch second of the first dive
   bool there_{}, stuck_{};  ///< the drift before it ends the way

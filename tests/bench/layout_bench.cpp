@@ -51,6 +51,16 @@ std::vector<float> currents(const Size& size) {
 
 // Every layout: what it is, a function at(place) -> (east, north), and the corners that it loads for a place.
 
+/// The corners of a place in rows of interleaved pairs, at one time or two.
+template <class Number, class See>
+void corners_in_rows(const Number* values, std::size_t slice, std::size_t row, const Place& p, std::size_t times,
+                     const See& see) {
+  for (std::size_t t = 0; t < times; ++t)
+    for (std::size_t north = 0; north < 2; ++north)
+      for (std::size_t east = 0; east < 2; ++east)
+        see(values + (p.time + t) * slice + (p.row + north) * row + 2 * (p.column + east));
+}
+
 /// [time][row][column](east, north): the flat grid's own.
 class Rows {
  public:
@@ -65,10 +75,7 @@ class Rows {
   }
   template <class See>
   void corners(const Place& p, std::size_t times, const See& see) const {
-    for (std::size_t t = 0; t < times; ++t)
-      for (std::size_t north = 0; north < 2; ++north)
-        for (std::size_t east = 0; east < 2; ++east)
-          see(values_.data() + (p.time + t) * slice_ + (p.row + north) * row_ + 2 * (p.column + east));
+    corners_in_rows(values_.data(), slice_, row_, p, times, see);
   }
   [[nodiscard]] std::size_t bytes() const { return values_.size() * sizeof(float); }
 
@@ -272,10 +279,7 @@ class Shorts {
   }
   template <class See>
   void corners(const Place& p, std::size_t times, const See& see) const {
-    for (std::size_t t = 0; t < times; ++t)
-      for (std::size_t north = 0; north < 2; ++north)
-        for (std::size_t east = 0; east < 2; ++east)
-          see(values_.data() + (p.time + t) * slice_ + (p.row + north) * row_ + 2 * (p.column + east));
+    corners_in_rows(values_.data(), slice_, row_, p, times, see);
   }
   [[nodiscard]] std::size_t bytes() const { return values_.size() * sizeof(std::int16_t); }
   static constexpr float kUnit = 2e-4F;  ///< m/s; ±6.5 m/s fit

@@ -5,6 +5,7 @@
 
 #include "core/base/text.hpp"
 #include "core/ocean/depth_average.hpp"
+#include "core/ocean/family.hpp"
 #include "core/ocean/gridded.hpp"
 #include "daemon/cli/field_text.hpp"
 
@@ -22,19 +23,28 @@ struct Query {
   std::optional<double> depth_m;
 };
 
+constexpr double kTop = -100;  // metres: above the shallowest level, which then answers
+
 /// The field that a query is answered from, and the whole one for telling land from missing data.
 struct Source {
   ocean::GriddedField field, full;
   std::vector<double> times_s;
-  double least_depth_m{-100};  ///< the water must reach deeper than this for the mean to exist
+  double least_depth_m{kTop};  ///< the water must reach deeper than this for the mean to exist
+
+  [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth z, double t_s) const {
+    const auto sample = field.sample(p, z, t_s);
+    // A mean borrowed from a neighbouring column would pass for one of this column, whose water ends above it.
+    if (sample && !full.sample(p, Depth{Metres{least_depth_m}}, t_s)) return unexpected(ocean::NoCurrent::no_data);
+    return sample;
+  }
+  [[nodiscard]] ocean::Coverage coverage() const { return field.coverage(); }
+  [[nodiscard]] MetresPerSecond fastest() const { return field.fastest(); }
 };
 
+Depth depth_of(const Query& query) { return Depth{Metres{query.depth_m.value_or(kTop)}}; }
+
 ordered_json answer(const Source& source, const Query& query) {
-  const Depth depth{Metres{query.depth_m.value_or(-100.0)}};
-  auto sample = source.field.sample(query.at, depth, query.time_s);
-  // A mean borrowed from a neighbouring column would pass for one of this column, whose water ends above it.
-  if (sample && !source.full.sample(query.at, Depth{Metres{source.least_depth_m}}, query.time_s))
-    sample = unexpected(ocean::NoCurrent::no_data);
+  const auto sample = source.sample(query.at, depth_of(query), query.time_s);
   if (sample)
     return {{"east_m_per_s", sample->current.east.si()},
             {"north_m_per_s", sample->current.north.si()},
@@ -55,7 +65,7 @@ ordered_json answer(const Source& source, const Query& query) {
     case ocean::NoCurrent::no_data:
     case ocean::NoCurrent::land: {
       // The shallowest level decides whether there is water at all.
-      const Depth top{Metres{-100}};
+      const Depth top{Metres{kTop}};
       if (source.full.sample(query.at, top, query.time_s)) {
         reason = ocean::NoCurrent::below_bottom;
         message = "the water here ends above the depths asked for";
@@ -69,6 +79,24 @@ ordered_json answer(const Source& source, const Query& query) {
     }
   }
   return {{"none", word(reason)}, {"message", message}};
+}
+
+/// Mean and spread of the members; null where most of them have no current.
+ordered_json answer(const ocean::Family& family, const Query& query) {
+  const auto sample = family.sample(query.at, depth_of(query), query.time_s);
+  if (!sample) return nullptr;
+  ordered_json json{{"members", sample->members},
+                    {"mean_east_m_per_s", sample->mean.east.si()},
+                    {"mean_north_m_per_s", sample->mean.north.si()},
+                    {"extrapolated", sample->extrapolated}};
+  const auto put = [&](const char* key, std::optional<MetresPerSecond> v) {
+    json[key] = v ? ordered_json(v->si()) : ordered_json(nullptr);
+  };
+  const auto& spread = sample->spread;
+  put("spread_east_m_per_s", spread ? std::optional{spread->east} : std::nullopt);
+  put("spread_north_m_per_s", spread ? std::optional{spread->north} : std::nullopt);
+  put("spread_m_per_s", spread ? std::optional{spread->vector()} : std::nullopt);
+  return json;
 }
 
 /// Splits a line at commas; blanks around a cell do not count.
@@ -138,6 +166,20 @@ void print_answer(const ordered_json& json, std::ostream& out) {
     out << "east " << decimal(json["east_m_per_s"].get<double>(), 4) << " m/s, north "
         << decimal(json["north_m_per_s"].get<double>(), 4) << " m/s"
         << (json["extrapolated"].get<bool>() ? ", extrapolated from the nearest water" : "") << '\n';
+  const auto ensemble = json.find("ensemble");
+  if (ensemble == json.end()) return;
+  if (ensemble->is_null()) {
+    out << "  most members have no current there\n";
+    return;
+  }
+  out << "  mean of " << ensemble->at("members").get<std::size_t>() << " members: east "
+      << decimal(ensemble->at("mean_east_m_per_s").get<double>(), 4) << " m/s, north "
+      << decimal(ensemble->at("mean_north_m_per_s").get<double>(), 4) << " m/s";
+  if (!ensemble->at("spread_m_per_s").is_null())
+    out << "; spread " << decimal(ensemble->at("spread_m_per_s").get<double>(), 4) << " m/s (east "
+        << decimal(ensemble->at("spread_east_m_per_s").get<double>(), 4) << ", north "
+        << decimal(ensemble->at("spread_north_m_per_s").get<double>(), 4) << ")";
+  out << '\n';
 }
 
 /// What is wrong with the options alone; empty when nothing is.
@@ -147,11 +189,37 @@ std::string misuse_of(const FieldSampleOptions& options) {
     return "--lat and --lon, or --points, are needed";
   if (!options.points.empty() && (options.lat_deg || options.lon_deg || options.time))
     return "--points brings its own places and times; leave out --lat, --lon and --time";
+  if (options.members > 0 && options.ingest.member) return "--member and --members exclude each other";
   if (options.depth_m && options.depth_mean) return "--depth and --depth-mean exclude each other";
   if (options.depth_m && !(*options.depth_m >= 0)) return "--depth is positive down, allowed is 0 or more";
   if (options.depth_mean && !(options.depth_mean->first >= 0 && options.depth_mean->second > options.depth_mean->first))
     return "--depth-mean MIN,MAX: allowed is 0 ≤ MIN < MAX";
   return {};
+}
+
+/// The members of the files that are asked for, at least the control, each a field of its own, and what keeps their grids.
+struct LoadedFamily {
+  std::vector<std::unique_ptr<daemon::LoadedGrid>> grids;
+  std::vector<Source> sources;
+  [[nodiscard]] ocean::Family family() const { return ocean::Family{{sources.begin(), sources.end()}}; }
+};
+
+Expected<LoadedFamily, std::string> family_of(const FieldSampleOptions& options,
+                                              std::unique_ptr<daemon::LoadedGrid> control, world::World& world) {
+  LoadedFamily loaded;
+  const auto take = [&](std::unique_ptr<daemon::LoadedGrid> grid) {
+    loaded.sources.push_back(source_of(options, grid->view));
+    loaded.grids.push_back(std::move(grid));
+  };
+  take(std::move(control));
+  for (std::uint32_t member = 1; member < static_cast<std::uint32_t>(options.members); ++member) {
+    auto ingest = options.ingest;
+    ingest.member = member;
+    auto grid = daemon::ingest_files(options.files, ingest, world);
+    if (!grid) return unexpected("member " + std::to_string(member) + ": " + grid.error());
+    take(std::move(grid).value());
+  }
+  return loaded;
 }
 
 }  // namespace
@@ -168,7 +236,7 @@ int run_field_sample(const FieldSampleOptions& options, world::World& world, std
     if (!at) return refuse_field(err, 2, at.error().message());
     queries.push_back({*at, *options.lat_deg, *options.lon_deg, 0, options.depth_m});
   }
-  const auto loaded = daemon::ingest_files(options.files, options.ingest, world);
+  auto loaded = daemon::ingest_files(options.files, options.ingest, world);
   if (!loaded) return refuse_field(err, 1, loaded.error());
   const auto& view = (*loaded)->view;
   for (const auto& warning : view.facts.warnings) err << "glidehelm field: warning: " << warning << '\n';
@@ -183,11 +251,15 @@ int run_field_sample(const FieldSampleOptions& options, world::World& world, std
       if (!query.depth_m) query.depth_m = options.depth_m;
   }
 
-  const Source source = source_of(options, view);
+  const auto members = family_of(options, std::move(loaded).value(), world);
+  if (!members) return refuse_field(err, 1, members.error());
+  const auto& source = members->sources.front();
+  const auto family = members->family();
   bool all = true;
   ordered_json samples = ordered_json::array();
   for (const auto& query : queries) {
-    const auto result = answer(source, query);
+    auto result = answer(source, query);
+    if (options.members > 0) result["ensemble"] = answer(family, query);
     all = all && !result.contains("none");
     if (!options.json) {
       if (!options.points.empty())

@@ -12,7 +12,7 @@
 
 namespace glidehelm::cli {
 
-/// `glidehelm field sample FILE… --lat --lon --time [--depth M | --depth-mean MIN,MAX] | --points CSV [--json]`.
+/// `glidehelm field sample FILE… --lat --lon --time [--depth M | --depth-mean MIN,MAX] | --points CSV [--members N] [--json]`.
 struct FieldSampleOptions {
   std::vector<std::string> files;
   daemon::IngestOptions ingest;
@@ -22,6 +22,7 @@ struct FieldSampleOptions {
   std::optional<std::pair<double, double>> depth_mean;  ///< plain mean between two depths
   std::string points;                                   ///< CSV of lat,lon,time[,depth]; a heading line is allowed
   ocean::Interpolation interpolation{ocean::Interpolation::linear};
+  int members{};  ///< mean and spread of so many members too; 0: of none
   bool json{};
 };
 
@@ -30,6 +31,9 @@ struct FieldSampleOptions {
 /// glidehelm/field-samples/v1: {"schema", "samples": [{"lat_deg", "lon_deg", "time", "depth_m"?, and the same}]}.
 /// A place that has no value at any time of the files is `land` (there is no coastline here: the model's mask is all there
 /// is); one that has a value at another time is `no_data`. Times outside the files are `outside_time`.
+/// With `members` each answer has the key `ensemble`: {"members", "mean_east_m_per_s", "mean_north_m_per_s", "extrapolated",
+/// "spread_east_m_per_s", "spread_north_m_per_s", "spread_m_per_s"} as ocean::Family has them (the last is Spread::vector; null of one
+/// member), or null where most members have no current. All members are in memory, as mapped grids.
 /// Returns 0; 1 when a place has no current or the files are refused; 2 for misuse, the line of the CSV named.
 int run_field_sample(const FieldSampleOptions& options, world::World& world, std::ostream& out, std::ostream& err);
 

@@ -87,6 +87,10 @@ void add_sample(CLI::App* field, Action& action) {
       ->check(CLI::IsMember({"nearest", "linear", "cubic", "akima"}));
   add_reading(sample, o->options.ingest);
   sample->add_option("--points", o->options.points, "CSV of lat,lon,time[,depth]");
+  sample
+      ->add_option("--members", o->options.members,
+                   "Mean and spread of the members 0 to N - 1 too; the value stays that of member 0")
+      ->check(CLI::Range(1, 100'000));
   sample->add_flag("--json", o->options.json, "One JSON document on standard output");
   sample->callback([=, &action] {
     if (*lat) o->options.lat_deg = o->lat;

@@ -5,9 +5,11 @@
 #include <random>
 
 #include "core/ocean/composite.hpp"
+#include "core/ocean/family.hpp"
 #include "tests/support/fields.hpp"
 
-// A search samples a composite field some hundred million times: not one of them may ask for memory.
+// A search samples a composite field some hundred million times, and a map asks a family at every node: not one of them may
+// ask for memory.
 
 namespace {
 std::atomic<std::size_t> g_asked{};  // how often this program has asked for memory
@@ -69,6 +71,19 @@ TEST_CASE("sampling sources in order of trust asks for no memory") {
     CHECK(after == before);
     CHECK(values > 500);
   }
+}
+
+TEST_CASE("sampling all members of a family asks for no memory") {
+  const auto one = two_models(Interpolation::linear), other = two_models(Interpolation::akima);
+  const Family family{{one, other, one}};
+  std::mt19937_64 random{27};
+  std::uniform_real_distribution<double> lat{36, 44}, lon{1, 9}, depth{0, 250}, time{-3600, 30 * 3600.0};
+  std::size_t values = 0;
+  const auto before = g_asked.load();
+  for (int n = 0; n < 2000; ++n)
+    if (family.sample(geo_point(lat(random), lon(random)), Depth{Metres{depth(random)}}, time(random))) ++values;
+  CHECK(g_asked.load() == before);
+  CHECK(values > 500);
 }
 
 TEST_CASE("stepping lanes through sources asks for no memory") {

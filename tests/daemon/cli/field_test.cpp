@@ -173,6 +173,50 @@ TEST_CASE("field sample gives the current, between times and levels") {
   CHECK(sample(options).document()["east_m_per_s"].get<double>() == Approx(0.25).epsilon(1e-6));
 }
 
+TEST_CASE("field sample tells mean and spread of the members beside the value of member 0") {
+  const test::ScratchFolder folder;
+  // Eastward 0.1, 0.2 and 0.6 m/s: mean 0.3, deviations −0.2, −0.1 and 0.3, spread √(0.14/2). At 50 and 60 north two of three are dry, and
+  // 59 is beyond the 1.5 cells that a value is borrowed over.
+  auto options = at(test::make_netcdf(folder, "e.nc", R"(netcdf e {
+dimensions: member = 3 ; lat = 4 ; lon = 2 ;
+variables: double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
+  float u(member, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ; u:_FillValue = -99.f ;
+  float v(member, lat, lon) ; v:units = "m/s" ; v:standard_name = "northward_sea_water_velocity" ; v:_FillValue = -99.f ;
+data: lat = 30, 40, 50, 60 ; lon = 0, 8 ;
+  u = 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.2, 0.2, 0.2, 0.2, _, _, _, _, 0.6, 0.6, 0.6, 0.6, _, _, _, _ ;
+  v = 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, 0.05, _, _, _, _, 0.05, 0.05, 0.05, 0.05, _, _, _, _ ;
+})"),
+                    35, 4, "2024-05-01");
+  options.members = 3;
+  auto said = sample(options);
+  INFO(said.err);
+  REQUIRE(said.code == 0);
+  const auto document = said.document();
+  const auto& all = document["ensemble"];
+  // Floats: 3e-8 of a value below 1.
+  CHECK(document["east_m_per_s"].get<double>() == Approx(0.1).margin(1e-7));
+  CHECK(all["members"] == 3);
+  CHECK(all["mean_east_m_per_s"].get<double>() == Approx(0.3).margin(1e-7));
+  CHECK(all["mean_north_m_per_s"].get<double>() == Approx(0.05).margin(1e-7));
+  CHECK(all["spread_east_m_per_s"].get<double>() == Approx(std::sqrt(0.07)).margin(1e-7));
+  CHECK(all["spread_north_m_per_s"].get<double>() == Approx(0).margin(1e-7));
+  CHECK(all["spread_m_per_s"].get<double>() == Approx(std::sqrt(0.07)).margin(1e-7));
+  options.json = false;
+  CHECK(sample(options).out.find(
+            "  mean of 3 members: east 0.3000 m/s, north 0.0500 m/s; spread 0.2646 m/s (east 0.2646, ") !=
+        std::string::npos);
+
+  options.lat_deg = 59;
+  options.json = true;
+  CHECK(sample(options).document()["ensemble"].is_null());
+  options.members = 4;
+  said = sample(options);
+  CHECK(said.code == 1);
+  CHECK(said.err.find("member 3: ") != std::string::npos);
+  options.ingest.member = 1;
+  CHECK(sample(options).code == 2);
+}
+
 TEST_CASE("field sample says why there is no current, and ends with 1") {
   const test::ScratchFolder folder;
   const auto file = shelf(folder);

@@ -34,12 +34,7 @@ std::vector<GriddedField> random_members(std::size_t count) {
   std::mt19937_64 random{31};
   for (std::size_t k = 0; k < count; ++k) {
     std::uniform_real_distribution<double> current{-0.4 + 0.1 * static_cast<double>(k), 0.5};
-    const GridAxes axes{test::steps(0, 3600, 3),
-                        {0, 50},
-                        test::steps(39, 0.5, 5),
-                        test::steps(4, 0.5, 5),
-                        true,
-                        true};
+    const GridAxes axes{test::steps(0, 3600, 3), {0, 50}, test::steps(39, 0.5, 5), test::steps(4, 0.5, 5), true, true};
     members.emplace_back(test::make_grid(axes,
                                          [&](double lat, double lon, double, double) {
                                            const std::pair value{current(random), current(random)};
@@ -71,7 +66,8 @@ TEST_CASE("two members around a mean have that mean and the root of two times th
   CHECK(said->spread->vector().si() == Approx(0.13 * std::sqrt(2.0)).margin(kRounding));
 }
 
-TEST_CASE("members that shear at equal steps of the rate are apart by the deviation of those rates times the distance") {
+TEST_CASE(
+    "members that shear at equal steps of the rate are apart by the deviation of those rates times the distance") {
   // Rates r + k·h for k = −2 … 2: mean r, Σk² = 10, spread h·√(10/4) of the rate.
   std::vector<test::FromFunction> members;
   for (int k = -2; k <= 2; ++k) members.push_back(shear(8.0 + 1.5 * k));
@@ -155,7 +151,9 @@ TEST_CASE("a single member is the mean and says nothing of a spread") {
 }
 
 TEST_CASE("a value that one member borrows marks the sample of the family") {
-  const auto coast = [](double, double lon) { return lon > 5 ? std::pair{test::kDry, test::kDry} : std::pair{0.1, 0.0}; };
+  const auto coast = [](double, double lon) {
+    return lon > 5 ? std::pair{test::kDry, test::kDry} : std::pair{0.1, 0.0};
+  };
   const auto open = [](double, double) { return std::pair{0.2, 0.0}; };
   const auto lats = test::steps(39, 0.5, 5), lons = test::steps(4, 0.5, 5);
   const auto borrows = test::make_field(lats, lons, coast), wet = test::make_field(lats, lons, open);

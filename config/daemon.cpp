@@ -26,7 +26,7 @@ struct LineDraft {
 struct EntryDraft : GliderEntry {
   LineDraft draft;
 };
-struct Draft : DaemonConfig {
+struct DaemonDraft : DaemonConfig {
   std::vector<EntryDraft> entries;
 };
 
@@ -166,7 +166,7 @@ void check_line(const At& at, const LineDraft& line) {
     complain(".allow", "no network, but listen is open beyond this machine", {}, "networks such as 192.0.2.0/24");
 }
 
-void add_clock(Fields<Draft>& f) {
+void add_clock(Fields<DaemonDraft>& f) {
   struct Simulated {
     std::string socket;
   };
@@ -177,8 +177,8 @@ void add_clock(Fields<Draft>& f) {
   }();
   f.custom(
       {"clock", "`system`, or the clock of a simulation: nothing then leaves the simulation's folders"},
-      Fields<Draft>::any_of({Fields<Draft>::word_shape({"system"}), kFields.shape()}), "system",
-      [](const At& at, Draft& d) {
+      Fields<DaemonDraft>::any_of({Fields<DaemonDraft>::word_shape({"system"}), kFields.shape()}), "system",
+      [](const At& at, DaemonDraft& d) {
         if (!at.node.is(Node::Kind::map)) {
           (void)read_word(at, {"system"});
           return;
@@ -187,13 +187,13 @@ void add_clock(Fields<Draft>& f) {
         kFields.read(at, s);
         d.simulated_clock = path_beside(at.reading.problems.file(), s.socket);
       },
-      [](const Draft& d, const std::string& path, Effective& out) {
+      [](const DaemonDraft& d, const std::string& path, Effective& out) {
         out.leaf(path, "clock", d.simulated_clock ? "{simulated: " + yaml_text(*d.simulated_clock) + "}" : "system");
       });
 }
 
-const Fields<Draft>& fields() {
-  static const Fields<Draft> kFields = [] {
+const Fields<DaemonDraft>& daemon_fields() {
+  static const Fields<DaemonDraft> kFields = [] {
     Fields<EntryDraft> glider;
     glider.text({"name", "name as the glider's dialog says it, in lower case", true}, &EntryDraft::name, kName);
     const auto line = line_fields();
@@ -226,21 +226,21 @@ const Fields<Draft>& fields() {
         });
     glider.flag({"clock_skew_ok", "the glider's clock is known to differ by more than 5 min: emit nevertheless"},
                 &EntryDraft::clock_skew_ok);
-    Fields<Draft> log;
-    log.word({"level", "least level that is logged"}, &Draft::log_level,
+    Fields<DaemonDraft> log;
+    log.word({"level", "least level that is logged"}, &DaemonDraft::log_level,
              std::vector<std::pair<std::string, LogLevel>>{{"debug", LogLevel::debug},
                                                            {"info", LogLevel::info},
                                                            {"warn", LogLevel::warn},
                                                            {"error", LogLevel::error}});
-    Fields<Draft> f;
+    Fields<DaemonDraft> f;
     f.constant({"schema", "what this file is", true}, kDaemonSchema);
     add_clock(f);
-    f.text({"state_dir", "folder of the journal and of the ocean grids"}, &Draft::state_dir);
-    f.text({"control_socket", "socket for commands to the running daemon"}, &Draft::control_socket);
-    f.texts({"missions", "mission files; shell patterns"}, &Draft::missions, 0);
-    f.text({"coast", "coast file of missions that name none", false, "none"}, &Draft::coast);
+    f.text({"state_dir", "folder of the journal and of the ocean grids"}, &DaemonDraft::state_dir);
+    f.text({"control_socket", "socket for commands to the running daemon"}, &DaemonDraft::control_socket);
+    f.texts({"missions", "mission files; shell patterns"}, &DaemonDraft::missions, 0);
+    f.text({"coast", "coast file of missions that name none", false, "none"}, &DaemonDraft::coast);
     f.section({"log", "what is logged"}, log);
-    f.list({"gliders", "the gliders, one line each", true}, &Draft::entries, glider, 1);
+    f.list({"gliders", "the gliders, one line each", true}, &DaemonDraft::entries, glider, 1);
     return f;
   }();
   return kFields;
@@ -273,7 +273,7 @@ class Unique {
   std::map<std::string, std::string> first_;
 };
 
-void check_gliders(const Draft& d, Reading& reading) {
+void check_gliders(const DaemonDraft& d, Reading& reading) {
   Unique names{reading, "name"}, ports{reading, "port"}, peers{reading, "host and port"},
       folders{reading, "to_glider folder"};
   for (std::size_t i = 0; i < d.entries.size(); ++i) {
@@ -289,7 +289,7 @@ void check_gliders(const Draft& d, Reading& reading) {
   }
 }
 
-void resolve(Draft& d, const std::string& file) {
+void resolve(DaemonDraft& d, const std::string& file) {
   d.state_dir = without_slash(path_beside(file, d.state_dir));
   d.control_socket = path_beside(file, d.control_socket);
   for (auto& pattern : d.missions) pattern = path_beside(file, pattern);
@@ -313,12 +313,12 @@ Expected<DaemonFile, std::vector<ConfigError>> read_daemon_file(std::string_view
   auto document = read_yaml(text, file);
   Reading reading{file};
   for (auto& error : document.errors) reading.problems.add(std::move(error));
-  Draft draft;
+  DaemonDraft draft;
   if (document.readable) {
     const At root{document.root, nullptr, "", reading};
     reading.places[""] = document.root.place;
     if (expect_map(root)) {
-      fields().read(root, draft);
+      daemon_fields().read(root, draft);
       check_gliders(draft, reading);
     }
   }
@@ -326,7 +326,7 @@ Expected<DaemonFile, std::vector<ConfigError>> read_daemon_file(std::string_view
   resolve(draft, file);
   DaemonFile result;
   Effective effective{&reading};
-  fields().print(draft, "", effective);
+  daemon_fields().print(draft, "", effective);
   result.effective = effective.text();
   result.config = static_cast<const DaemonConfig&>(draft);
   for (std::size_t i = 0; i < draft.entries.size(); ++i)
@@ -338,15 +338,15 @@ std::vector<std::string> mission_patterns(std::string_view text, const std::stri
   const auto document = read_yaml(text, file);
   if (!document.readable) return {};
   Reading reading{file};
-  Draft draft;
+  DaemonDraft draft;
   const At root{document.root, nullptr, "", reading};
   if (!expect_map(root)) return {};
-  fields().read(root, draft);
+  daemon_fields().read(root, draft);
   resolve(draft, file);
   return draft.missions;
 }
 
-Shape daemon_shape() { return fields().shape(); }
+Shape daemon_shape() { return daemon_fields().shape(); }
 
 std::string daemon_schema() { return json_schema(daemon_shape(), kDaemonSchema, "Glidehelm daemon"); }
 

@@ -11,7 +11,7 @@ using vehicle::Hull;
 using vehicle::Trim;
 using vehicle::WaterLayer;
 
-constexpr double kDegree = kPi / 180, kLitre = 1e-3, kCubicCentimetre = 1e-6;
+constexpr double kLitre = 1e-3, kCubicCentimetre = 1e-6;
 
 Fields<Trim> trim_fields() {
   Fields<Trim> f;

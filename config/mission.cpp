@@ -17,11 +17,11 @@ namespace {
 using mission::Approval;
 using mission::Mission;
 
-constexpr double kHour = 3600.0, kMinute = 60.0, kKilometre = 1000.0, kDegree = kPi / 180.0;
+constexpr double kHour = 3600.0, kMinute = 60.0, kKilometre = 1000.0;
 constexpr double kShortestStint_h = 0.1, kLongestStint_h = 72.0;
 
 /// A mission as its file says it, before what depends on several keys is worked out.
-struct Draft : Mission {
+struct MissionDraft : Mission {
   std::optional<double> goal_lat, goal_lon, start_lat, start_lon;  ///< degrees
   std::optional<MetresPerSecond> speed_given;
   std::optional<Radians> glide_angle_given;
@@ -40,74 +40,77 @@ const Pattern kNext{"^next [a-z0-9][a-z0-9_-]{0,31}$", "`next NAME`", matches_ne
 // The firmware keeps its files under 8.3 names.
 const Pattern kMi{"^[a-z0-9_-]{1,8}\\.mi$", "1 to 8 of a–z, 0–9, _ and -, then .mi", matches_mi};
 
-Fields<Draft> goal_fields() {
-  Fields<Draft> f;
-  f.latitude({"lat_deg", "latitude of the goal, south negative", true}, &Draft::goal_lat);
-  f.longitude({"lon_deg", "longitude of the goal, west negative", true}, &Draft::goal_lon);
-  f.number({"radius_m", "the mission has arrived within this distance"}, &Draft::goal_radius, 1, from_to(10, 200'000));
+Fields<MissionDraft> goal_fields() {
+  Fields<MissionDraft> f;
+  f.latitude({"lat_deg", "latitude of the goal, south negative", true}, &MissionDraft::goal_lat);
+  f.longitude({"lon_deg", "longitude of the goal, west negative", true}, &MissionDraft::goal_lon);
+  f.number({"radius_m", "the mission has arrived within this distance"}, &MissionDraft::goal_radius, 1,
+           from_to(10, 200'000));
   return f;
 }
 
-Fields<Draft> objective_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> objective_fields() {
+  Fields<MissionDraft> f;
   f.time({"min_distance_at",
           "be as near to the goal as can be at the last surfacing before this time; reached earlier is better still",
           false, "the earliest arrival"},
-         &Draft::nearest_at);
+         &MissionDraft::nearest_at);
   return f;
 }
 
-Fields<Draft> start_fields() {
-  Fields<Draft> f;
-  f.latitude({"lat_deg", "latitude of the start", false, "the fix"}, &Draft::start_lat);
-  f.longitude({"lon_deg", "longitude of the start", false, "the fix"}, &Draft::start_lon);
-  f.time({"time", "time of the start", false, "the time of the fix"}, &Draft::start_time);
+Fields<MissionDraft> start_fields() {
+  Fields<MissionDraft> f;
+  f.latitude({"lat_deg", "latitude of the start", false, "the fix"}, &MissionDraft::start_lat);
+  f.longitude({"lon_deg", "longitude of the start", false, "the fix"}, &MissionDraft::start_lon);
+  f.time({"time", "time of the start", false, "the time of the fix"}, &MissionDraft::start_time);
   return f;
 }
 
-Fields<Draft> vehicle_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> vehicle_fields() {
+  Fields<MissionDraft> f;
   f.maybe_number({"horizontal_speed_m_per_s",
                   "speed through water, horizontal part: U·cos(glide angle); not together with `force_balance`", false,
                   "0.3, or what `force_balance` gives"},
-                 &Draft::speed_given, 1, above(0, 2));
+                 &MissionDraft::speed_given, 1, above(0, 2));
   f.maybe_number({"glide_angle_deg", "angle of the path below the horizon; not together with `force_balance`", false,
                   "26, or what `force_balance` gives"},
-                 &Draft::glide_angle_given, kDegree, from_to(5, 60));
+                 &MissionDraft::glide_angle_given, kDegree, from_to(5, 60));
   f.word({"motion",
           "what carries a plan: `point`, the mean current over the dive; `yo-yo`, the current at the depth at each "
           "instant "
           "(slower)"},
-         &Draft::motion,
+         &MissionDraft::motion,
          std::vector<std::pair<std::string, vehicle::MotionModel>>{{"point", vehicle::MotionModel::point},
                                                                    {"yo-yo", vehicle::MotionModel::yo_yo}});
   f.custom(
       {"force_balance", "the glider as a body: its speed and glide angle follow from hull, pump, pitch and water",
        false, "none"},
-      flight_model_fields().shape(), "", [](const At& at, Draft& d) { read_flight_model(at, d.flight_model); },
-      [](const Draft& d, const std::string& path, Effective& out) { print_flight_model(d.flight_model, path, out); });
-  f.number({"dive_depth_m", "lower turning depth of the yo"}, &Draft::dive_depth, 1, above(0, 1500));
-  f.number({"climb_to_m", "upper turning depth of the yo; less than `dive_depth_m`"}, &Draft::climb_to, 1,
+      flight_model_fields().shape(), "", [](const At& at, MissionDraft& d) { read_flight_model(at, d.flight_model); },
+      [](const MissionDraft& d, const std::string& path, Effective& out) {
+        print_flight_model(d.flight_model, path, out);
+      });
+  f.number({"dive_depth_m", "lower turning depth of the yo"}, &MissionDraft::dive_depth, 1, above(0, 1500));
+  f.number({"climb_to_m", "upper turning depth of the yo; less than `dive_depth_m`"}, &MissionDraft::climb_to, 1,
            from_to(0, 1500));
   f.whole({"current_correction",
            "`u_use_current_correction` of the glider: 0 steers without currents, 1 with the last measured one"},
-          &Draft::current_correction, from_to(0, 1));
+          &MissionDraft::current_correction, from_to(0, 1));
   f.maybe_number({"local_frame_rotation_deg", "rotation of the glider's local frame against east and north", false,
                   "learned; 0 until then"},
-                 &Draft::frame_rotation, kDegree, from_to(-180, 180));
+                 &MissionDraft::frame_rotation, kDegree, from_to(-180, 180));
   return f;
 }
 
-Fields<Draft> schedule_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> schedule_fields() {
+  Fields<MissionDraft> f;
   f.maybe_number({"stint_h", "time under water between two surfacings; not together with `half_cycles`", false,
                   "4, or what `half_cycles` gives"},
-                 &Draft::stint_given, kHour, from_to(kShortestStint_h, kLongestStint_h));
-  f.number({"surface_min", "time at the surface between two stints"}, &Draft::surface, kMinute, from_to(0, 240));
-  f.maybe_number({"first_stint_h", "time under water of the first stint"}, &Draft::first_stint_given, kHour,
+                 &MissionDraft::stint_given, kHour, from_to(kShortestStint_h, kLongestStint_h));
+  f.number({"surface_min", "time at the surface between two stints"}, &MissionDraft::surface, kMinute, from_to(0, 240));
+  f.maybe_number({"first_stint_h", "time under water of the first stint"}, &MissionDraft::first_stint_given, kHour,
                  from_to(kShortestStint_h, kLongestStint_h), "same");
   f.maybe_whole({"half_cycles", "dives and climbs of the yo in one stint, instead of `stint_h`", false, "none"},
-                &Draft::half_cycles, from_to(1, 1000));
+                &MissionDraft::half_cycles, from_to(1, 1000));
   return f;
 }
 
@@ -136,8 +139,8 @@ Fields<planning::SectorGrid> sector_grid_fields() {
   return f;
 }
 
-Fields<Draft> planning_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> planning_fields() {
+  Fields<MissionDraft> f;
   const std::vector<std::pair<std::string, std::string>> methods{{"direct", "direct"},
                                                                  {"astar", "astar"},
                                                                  {"cts-astar", "cts-astar"},
@@ -152,95 +155,97 @@ Fields<Draft> planning_fields() {
                                                                  {"iterative-optimization", "iterative-optimization"},
                                                                  {"zermelo", "zermelo"},
                                                                  {"best", "best"}};
-  f.word({"method", "how the way is found; `best` takes the best of all"}, &Draft::method, methods);
-  f.whole({"headings", "headings tried at each surfacing"}, &Draft::headings, from_to(4, 72));
+  f.word({"method", "how the way is found; `best` takes the best of all"}, &MissionDraft::method, methods);
+  f.whole({"headings", "headings tried at each surfacing"}, &MissionDraft::headings, from_to(4, 72));
   f.maybe_number({"cell_km", "cell in which two surfacings count as one; `auto`: half a stint through still water"},
-                 &Draft::cell, kKilometre, above(0, 1000), "auto");
-  f.number({"budget_s", "time after the fix at which the best plan so far goes out"}, &Draft::budget, 1, above(0, 900));
+                 &MissionDraft::cell, kKilometre, above(0, 1000), "auto");
+  f.number({"budget_s", "time after the fix at which the best plan so far goes out"}, &MissionDraft::budget, 1,
+           above(0, 900));
   f.maybe_number(
       {"horizon_h", "longest travel time looked at; `auto`: three times that through still water, at least 12 stints"},
-      &Draft::horizon, kHour, above(0, 8784), "auto");
-  f.part({"astar", "the nodes that `astar` goes over; their spacing is `cell_km`"}, &Draft::lattice, lattice_fields());
-  f.part({"tve", "the grid that `tve`, `astar-tve`, `ztve` and `zastar-tve` go over"}, &Draft::sector_grid,
+      &MissionDraft::horizon, kHour, above(0, 8784), "auto");
+  f.part({"astar", "the nodes that `astar` goes over; their spacing is `cell_km`"}, &MissionDraft::lattice,
+         lattice_fields());
+  f.part({"tve", "the grid that `tve`, `astar-tve`, `ztve` and `zastar-tve` go over"}, &MissionDraft::sector_grid,
          sector_grid_fields());
-  f.whole({"seed", "of methods that draw random numbers"}, &Draft::seed, from_to(0, 9007199254740992.0));
+  f.whole({"seed", "of methods that draw random numbers"}, &MissionDraft::seed, from_to(0, 9007199254740992.0));
   return f;
 }
 
-void add_areas(Fields<Draft>& f, const char* key, const char* meaning, AreasDraft Draft::*member) {
+void add_areas(Fields<MissionDraft>& f, const char* key, const char* meaning, AreasDraft MissionDraft::*member) {
   f.custom(
-      {key, meaning}, areas_shape(), "[]", [member](const At& at, Draft& d) { read_areas(at, d.*member); },
-      [member, key](const Draft& d, const std::string& path, Effective& out) {
+      {key, meaning}, areas_shape(), "[]", [member](const At& at, MissionDraft& d) { read_areas(at, d.*member); },
+      [member, key](const MissionDraft& d, const std::string& path, Effective& out) {
         print_areas(d.*member, path, key, out);
       });
 }
 
-Fields<Draft> safety_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> safety_fields() {
+  Fields<MissionDraft> f;
   f.text({"coast", "coast file, cut with `glidehelm coast`", false,
           "that of the daemon file, else the land of the forecast, with a warning"},
-         &Draft::coast_file);
+         &MissionDraft::coast_file);
   f.number(
       {"min_distance_to_coast_m", "distance that the track keeps from the coast and from the border of every area"},
-      &Draft::min_distance_to_coast, 1, from_to(0, 50'000));
+      &MissionDraft::min_distance_to_coast, 1, from_to(0, 50'000));
   f.text({"bathymetry", "depth file, made with `glidehelm-ingest --bathymetry`", false,
           "none: the depth of the water is not judged"},
-         &Draft::bathymetry_file);
+         &MissionDraft::bathymetry_file);
   f.maybe_number({"min_water_depth_m", "least depth of the water under the track; needs `bathymetry`", false,
                   "with `bathymetry`: climb_to_m + depth_margin_m"},
-                 &Draft::min_water_depth, 1, from_to(0, 11'000));
-  f.number({"depth_margin_m", "the glider turns this far above the bottom; needs `bathymetry`"}, &Draft::depth_margin,
-           1, from_to(0, 1000));
-  add_areas(f, "keep_in", "the glider stays inside one of these polygons; none: everywhere", &Draft::inside);
-  add_areas(f, "keep_out", "the glider stays outside all of these polygons", &Draft::outside);
+                 &MissionDraft::min_water_depth, 1, from_to(0, 11'000));
+  f.number({"depth_margin_m", "the glider turns this far above the bottom; needs `bathymetry`"},
+           &MissionDraft::depth_margin, 1, from_to(0, 1000));
+  add_areas(f, "keep_in", "the glider stays inside one of these polygons; none: everywhere", &MissionDraft::inside);
+  add_areas(f, "keep_out", "the glider stays outside all of these polygons", &MissionDraft::outside);
   f.maybe_number({"max_wpt_distance_m",
                   "`max_wpt_distance` of the glider's mission: a waypoint beyond aborts it; legs stay below 0.9 of it",
                   false, "none"},
-                 &Draft::max_wpt_distance, 1, above(0, 1e7));
+                 &MissionDraft::max_wpt_distance, 1, above(0, 1e7));
   return f;
 }
 
-Fields<Draft> list_fields() {
+Fields<MissionDraft> list_fields() {
   using model::AtEnd;
-  Fields<Draft> f;
-  f.whole({"slot", "NN of `goto_lNN.ma`"}, &Draft::slot, from_to(0, 99));
-  f.whole({"max_waypoints", "longest list that the glider takes"}, &Draft::max_waypoints, from_to(1, 8));
+  Fields<MissionDraft> f;
+  f.whole({"slot", "NN of `goto_lNN.ma`"}, &MissionDraft::slot, from_to(0, 99));
+  f.whole({"max_waypoints", "longest list that the glider takes"}, &MissionDraft::max_waypoints, from_to(1, 8));
   f.maybe_number({"radius_m", "distance at which a waypoint counts as reached; `auto`: 10 % of the median leg"},
-                 &Draft::list_radius, 1, from_to(10, 100'000), "auto");
-  f.word({"at_end", "after the last waypoint: back to the first, or wait for the next file"}, &Draft::at_end,
+                 &MissionDraft::list_radius, 1, from_to(10, 100'000), "auto");
+  f.word({"at_end", "after the last waypoint: back to the first, or wait for the next file"}, &MissionDraft::at_end,
          std::vector<std::pair<std::string, AtEnd>>{{"loop", AtEnd::loop}, {"wait", AtEnd::wait}});
   return f;
 }
 
-Fields<Draft> window_fields() {
-  Fields<Draft> f;
+Fields<MissionDraft> window_fields() {
+  Fields<MissionDraft> f;
   f.number({"max_min", "longest time from the fix to the dive that is counted on, whatever the dialog says"},
-           &Draft::window_max, kMinute, above(0, 120));
+           &MissionDraft::window_max, kMinute, above(0, 120));
   f.number({"dockzr_after_s", "time from the call to the moment at which the dockserver's script sends files"},
-           &Draft::dockzr_after, 1, from_to(0, 900));
+           &MissionDraft::dockzr_after, 1, from_to(0, 900));
   f.word({"emit_on",
           "the file goes out once the at-surface block has named the mission, or already on the connection block"},
-         &Draft::emit_on_connection,
+         &MissionDraft::emit_on_connection,
          std::vector<std::pair<std::string, bool>>{{"at_surface", false}, {"connection", true}});
   return f;
 }
 
-const Fields<Draft>& fields() {
-  static const Fields<Draft> kFields = [] {
-    Fields<Draft> approval;
+const Fields<MissionDraft>& mission_fields() {
+  static const Fields<MissionDraft> kFields = [] {
+    Fields<MissionDraft> approval;
     approval.word(
         {"mode",
          "`manual`: propose, emit nothing; `auto-if-safe`: emit what the verifier accepts if nothing is unusual; "
          "`auto`: emit what the verifier accepts"},
-        &Draft::approval,
+        &MissionDraft::approval,
         std::vector<std::pair<std::string, Approval>>{
             {"manual", Approval::manual}, {"auto-if-safe", Approval::auto_if_safe}, {"auto", Approval::automatic}});
-    Fields<Draft> f;
+    Fields<MissionDraft> f;
     f.constant({"schema", "what this file is", true}, kMissionSchema);
-    f.text({"name", "name of the mission, in logs and for `after_goal`", true}, &Draft::name, kName);
-    f.text({"glider", "glider that flies it, as in the daemon file", true}, &Draft::glider, kName);
+    f.text({"name", "name of the mission, in logs and for `after_goal`", true}, &MissionDraft::name, kName);
+    f.text({"glider", "glider that flies it, as in the daemon file", true}, &MissionDraft::glider, kName);
     f.text({"glider_mission", "mission that must run on the glider; another one is not steered", false, "any"},
-           &Draft::slocum_mission, kMi);
+           &MissionDraft::slocum_mission, kMi);
     f.section({"goal", "where to", true}, goal_fields());
     f.section({"objective", "what makes a plan the better one"}, objective_fields());
     f.section({"start", "where from, for `plan` and `rehearse`; in service the fix decides"}, start_fields());
@@ -248,21 +253,21 @@ const Fields<Draft>& fields() {
     f.section({"schedule", "when it dives and surfaces"}, schedule_fields());
     f.custom(
         {"currents", "what the water does; a list adds fields", true}, currents_shape(), "",
-        [](const At& at, Draft& d) { read_currents(at, d.fields); },
-        [](const Draft& d, const std::string& path, Effective& out) { print_currents(d.fields, path, out); });
+        [](const At& at, MissionDraft& d) { read_currents(at, d.fields); },
+        [](const MissionDraft& d, const std::string& path, Effective& out) { print_currents(d.fields, path, out); });
     f.section({"planning", "how the way is found"}, planning_fields());
     f.section({"safety", "what the verifier holds every file against"}, safety_fields());
     f.section({"list", "the waypoint file"}, list_fields());
     f.section({"window", "the time at the surface"}, window_fields());
     f.section({"approval", "who lets a file out"}, approval);
     f.text({"after_goal", "`next NAME`: that mission takes over at the goal", false, "the glider stays at the goal"},
-           &Draft::after_goal, kNext);
+           &MissionDraft::after_goal, kNext);
     return f;
   }();
   return kFields;
 }
 
-void check_positions(const Draft& d, Reading& reading) {
+void check_positions(const MissionDraft& d, Reading& reading) {
   if (d.goal_lat && d.goal_lon && *d.goal_lat == 0 && *d.goal_lon == 0)
     reading.complain("goal", "latitude 0, longitude 0 is no goal but a position that was never set");
   const bool lat = reading.places.count("start.lat_deg") > 0, lon = reading.places.count("start.lon_deg") > 0;
@@ -270,7 +275,7 @@ void check_positions(const Draft& d, Reading& reading) {
   if (lon && !lat) reading.complain("start.lat_deg", "missing; start.lon_deg is set");
 }
 
-void check_vehicle(const Draft& d, Reading& reading) {
+void check_vehicle(const MissionDraft& d, Reading& reading) {
   if (d.climb_to >= d.dive_depth)
     reading.complain("vehicle.climb_to_m", "not above the dive depth", yaml_number(d.climb_to.si()),
                      "less than dive_depth_m (" + yaml_number(d.dive_depth.si()) + " m)");
@@ -283,7 +288,7 @@ void check_vehicle(const Draft& d, Reading& reading) {
 }
 
 /// Speed and glide angle: as they are given, or the means of the body over the yo.
-void resolve_speed(Draft& d, Reading& reading) {
+void resolve_speed(MissionDraft& d, Reading& reading) {
   if (!d.flight_model) {
     d.speed_given = d.horizontal_speed = d.speed_given.value_or(Mission{}.horizontal_speed);
     d.glide_angle_given = d.glide_angle = d.glide_angle_given.value_or(Mission{}.glide_angle);
@@ -297,7 +302,7 @@ void resolve_speed(Draft& d, Reading& reading) {
   d.glide_angle = means->glide_angle;
 }
 
-void check_schedule(const Draft& d, Reading& reading) {
+void check_schedule(const MissionDraft& d, Reading& reading) {
   if (!d.half_cycles) return;
   if (d.stint_given) {
     reading.complain("schedule.half_cycles", "both half_cycles and stint_h", {}, "one of the two");
@@ -310,13 +315,13 @@ void check_schedule(const Draft& d, Reading& reading) {
                      {}, "a stint of " + from_to(kShortestStint_h, kLongestStint_h).text() + " h");
 }
 
-void check_planning(const Draft& d, Reading& reading) {
+void check_planning(const MissionDraft& d, Reading& reading) {
   if (d.lattice.neighbours % 8 != 0)
     reading.complain("planning.astar.neighbours", "no neighbourhood", std::to_string(d.lattice.neighbours),
                      "8, 16 or 24");
 }
 
-void check_safety(const Draft& d, Reading& reading) {
+void check_safety(const MissionDraft& d, Reading& reading) {
   if (!d.min_water_depth) return;
   if (d.bathymetry_file.empty())
     reading.complain("safety.min_water_depth_m",
@@ -328,7 +333,7 @@ void check_safety(const Draft& d, Reading& reading) {
 }
 
 /// Works out what depends on several keys. Only for a draft without error.
-void resolve(Draft& d, const std::string& file) {
+void resolve(MissionDraft& d, const std::string& file) {
   d.goal = GeoPoint::from_degrees(*d.goal_lat, *d.goal_lon).value();
   if (d.start_lat && d.start_lon) d.start = GeoPoint::from_degrees(*d.start_lat, *d.start_lon).value();
   if (d.half_cycles)
@@ -357,12 +362,12 @@ Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_vi
   auto document = read_yaml(text, file);
   Reading reading{file};
   for (auto& error : document.errors) reading.problems.add(std::move(error));
-  Draft draft;
+  MissionDraft draft;
   if (document.readable) {
     const At root{document.root, nullptr, "", reading};
     reading.places[""] = document.root.place;
     if (expect_map(root)) {
-      fields().read(root, draft);
+      mission_fields().read(root, draft);
       check_positions(draft, reading);
       check_vehicle(draft, reading);
       resolve_speed(draft, reading);
@@ -376,7 +381,7 @@ Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_vi
   if (!reading.problems.empty()) return unexpected(reading.problems.sorted());
   resolve(draft, file);
   Effective effective{&reading};
-  fields().print(draft, "", effective);
+  mission_fields().print(draft, "", effective);
   return MissionFile{static_cast<const Mission&>(draft), effective.text()};
 }
 
@@ -387,7 +392,7 @@ Expected<Mission, std::vector<ConfigError>> read_mission(std::string_view text, 
   return std::move(result->mission);
 }
 
-Shape mission_shape() { return fields().shape(); }
+Shape mission_shape() { return mission_fields().shape(); }
 
 std::string mission_schema() { return json_schema(mission_shape(), kMissionSchema, "Glidehelm mission"); }
 

@@ -53,7 +53,7 @@ void Session::plan_waiting() {
   if (forecast_.old()) desk_.log.warn(entry_.name, "the forecast is old: " + forecast_.in_use());
   ++pending_;
   auto& net = desk_.world.net;
-  const auto post = [this, alive = alive_, &net](std::function<void()> then) {
+  const auto post = [alive = alive_, &net](std::function<void()> then) {
     net.post([alive, then = std::move(then)] {
       if (*alive) then();
     });

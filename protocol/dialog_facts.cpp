@@ -46,8 +46,6 @@ constexpr std::array<std::pair<Say, std::string_view>, 32> kPhrases{{
     {Say::login, "No login script found"},
 }};
 
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
-
 bool is_name_character(char c) { return is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '.'; }
 
 std::string_view first_word(std::string_view text) { return text.substr(0, text.find_first_of(" \t")); }

@@ -12,8 +12,6 @@ namespace glidehelm::protocol {
 
 namespace {
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
-bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 bool is_word(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
 /// A text with a place in it. Each `take` moves on and says true, or stays and says false.

@@ -4,11 +4,11 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/base/text.hpp"
+
 namespace glidehelm::protocol {
 
 namespace {
-
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// The digits of a plain decimal number; minutes are in 1e-9.
 struct Digits {

@@ -139,12 +139,6 @@ constexpr auto kRules = std::to_array<BArgRule>({
     any(kHeading, "heading_value", "X"),
 });
 
-std::string number_text(double value) {
-  char text[48];
-  const int n = std::snprintf(text, sizeof text, "%.10g", value);
-  return {text, static_cast<std::size_t>(n)};
-}
-
 }  // namespace
 
 const BArgRule* b_arg_rule(std::string_view behavior, std::string_view name) {
@@ -168,6 +162,12 @@ std::string_view other_behavior_with(std::string_view behavior, std::string_view
   const auto found = std::find_if(kRules.begin(), kRules.end(),
                                   [&](const BArgRule& r) { return r.behavior != behavior && r.name == name; });
   return found == kRules.end() ? std::string_view{} : found->behavior;
+}
+
+std::string number_text(double value) {
+  char text[48];
+  const int n = std::snprintf(text, sizeof text, "%.10g", value);
+  return {text, static_cast<std::size_t>(n)};
 }
 
 std::string allowed_text(const BArgRule& rule) {

@@ -30,6 +30,8 @@ bool knows_all_b_args(std::string_view behavior);
 /// Another behaviour that has a b_arg of that name and of which `behavior` has none; empty: none known.
 std::string_view other_behavior_with(std::string_view behavior, std::string_view name);
 
+/// A number as messages show it: ten digits, no trailing zeros.
+std::string number_text(double value);
 /// The allowed values in words: `0, 1, 2, 4`, `120 or more`, `0 to 900`.
 std::string allowed_text(const BArgRule& rule);
 

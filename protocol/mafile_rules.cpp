@@ -16,14 +16,6 @@ namespace glidehelm::protocol {
 
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
-
-std::string number_text(double value) {
-  char text[48];
-  const int n = std::snprintf(text, sizeof text, "%.10g", value);
-  return {text, static_cast<std::size_t>(n)};
-}
-
 /// Messages quote the file: without bytes that could forge a log line, and not without end.
 std::string printable(std::string_view message) {
   constexpr std::size_t kMost = 300;
@@ -169,7 +161,8 @@ std::string km(Metres d) {
 void check_places(const Mafile& file, const GeoPoint& glider, ProblemList& problems) {
   constexpr Metres kFar{500'000};
   for (const auto& waypoint : file.waypoints) {
-    const auto as_meant = waypoint.at ? distance(glider, *waypoint.at) : Metres{kNoLimit};
+    const auto as_meant =
+        waypoint.at ? distance(glider, *waypoint.at) : Metres{std::numeric_limits<double>::infinity()};
     const auto say = [&](std::string_view code, Weight weight, const std::string& what) {
       problems.add(waypoint.line, waypoint.column, code, weight,
                    waypoint.lon_text + " " + waypoint.lat_text + " " + what);

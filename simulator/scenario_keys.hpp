@@ -18,7 +18,7 @@ using config::Shape;
 inline Range between(double low, double high) { return {low, high, false}; }
 inline Range above_zero(double high) { return {0, high, true}; }
 
-inline constexpr double kPerMinute = 60, kPerHour = 3600, kDegree = kPi / 180, kPercent = 0.01, kCubicCentimetre = 1e-6;
+inline constexpr double kPerMinute = 60, kPerHour = 3600, kPercent = 0.01, kCubicCentimetre = 1e-6;
 
 /// Keys that are on or off, by a word for each.
 inline std::vector<std::pair<std::string, bool>> no_or_yes(std::string no, std::string yes) {

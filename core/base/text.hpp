@@ -15,6 +15,9 @@ std::optional<double> number_from(std::string_view text);
 /// nothing when even the nearest needs more than a third of the word's length + 1 edits.
 std::optional<std::string> nearest_word(std::string_view word, std::span<const std::string> candidates);
 
+/// Of ASCII, independent of the locale.
+constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
+constexpr bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 /// ASCII lower case, independent of the locale.
 std::string lower(std::string_view text);
 bool equal_without_case(std::string_view a, std::string_view b);

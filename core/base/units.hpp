@@ -51,7 +51,8 @@ constexpr MetresPerSecond operator/(Metres d, Seconds t) { return MetresPerSecon
 constexpr Seconds operator/(Metres d, MetresPerSecond v) { return Seconds{d.si() / v.si()}; }
 
 inline constexpr double kPi = 3.14159265358979323846;
-constexpr Radians degrees(double deg) { return Radians{deg * (kPi / 180.0)}; }
+inline constexpr double kDegree = kPi / 180.0;  ///< in radians
+constexpr Radians degrees(double deg) { return Radians{deg * kDegree}; }
 constexpr double in_degrees(Radians angle) { return angle.si() * (180.0 / kPi); }
 
 /// Depth below the surface, positive down.

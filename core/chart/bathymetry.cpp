@@ -15,7 +15,6 @@ namespace glidehelm::chart {
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
 constexpr std::string_view kFirst = "# glidehelm depth v1\n";
 constexpr std::string_view kLast = "end crc32c ";
 /// A position that rounding puts just outside the outermost nodes is on them: 1e-6 of a step.

@@ -28,7 +28,7 @@ Region land_of(const CoastArea& area, const std::vector<CoastRing>& rings) {
   return Region{std::move(outline)};
 }
 
-Region box_of(const CoastArea& area) {
+Region area_of(const CoastArea& area) {
   const auto w = static_cast<std::int32_t>(area.width());
   const auto s = static_cast<std::int32_t>(area.south), n = static_cast<std::int32_t>(area.north);
   Outline outline;
@@ -50,7 +50,7 @@ Coast::Coast(CoastArea area, std::string source, std::vector<CoastRing> rings)
       rings_{std::move(rings)},
       middle_{middle_of(area)},
       land_{land_of(area, rings_)},
-      charted_{box_of(area)} {
+      charted_{area_of(area)} {
   east_ = 0.5 * static_cast<double>(area.width()) * kRadiansPerUnit;
   west_ = -east_;
   south_ = static_cast<double>(area.south) * kRadiansPerUnit;

@@ -69,7 +69,8 @@ void SourceErrors::see(const CurrentResidual& r) {
   std::vector<double> before;  // each source's variance as it was for `of_mean`
   for (const auto& s : r.shares) before.push_back(variance(s.source));
   for (std::size_t i = 0; i < r.shares.size(); ++i) {
-    const auto& [source, share] = r.shares[i];
+    const auto& source = r.shares[i].source;
+    const double share = r.shares[i].share;
     if (!(share > 0)) continue;
     if (find(source) == nullptr) known_.push_back({source, 0, 0});
     auto& known = *std::find_if(known_.begin(), known_.end(), [&](const Known& k) { return k.source == source; });

@@ -38,10 +38,10 @@ struct Open {
 /// Order of a heap whose top is the smallest f, then the label created first.
 bool after(const Open& a, const Open& b) { return a.f > b.f || (a.f == b.f && a.label > b.label); }
 
-class Search {
+class LabelSearch {
  public:
-  Search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
-         const CtsSettings& settings)
+  LabelSearch(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
+              const CtsSettings& settings)
       : problem_{problem},
         ocean_{ocean},
         chart_{chart},
@@ -521,7 +521,7 @@ Metres cell_of(const Problem& problem) {
 
 CtsSearch search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,
                  const CtsSettings& settings) {
-  return Search{problem, ocean, chart, budget, settings}.run();
+  return LabelSearch{problem, ocean, chart, budget, settings}.run();
 }
 
 }  // namespace glidehelm::planning

@@ -24,7 +24,7 @@ Front::Front(GeoPoint at, ocean::FieldRef dive, const chart::Chart& chart, doubl
       clearance_{clearance},
       spacing_{spacing},
       walk_{chart, clearance},
-      lattice_{Lattice::about(at.lat.radians(), at.lon.radians(), 0.5 * spacing)} {
+      lattice_{Squares::about(at.lat.radians(), at.lon.radians(), 0.5 * spacing)} {
   for (int i = 0; i < kFirstHeadings; ++i) {
     const auto n = turned(0, 1, 2 * kPi * i / kFirstHeadings);
     markers_.push_back({at.lat.radians(), at.lon.radians(), n.east, n.north});

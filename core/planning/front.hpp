@@ -98,7 +98,7 @@ class Front {
   const chart::Chart& chart_;
   double clearance_, spacing_;
   WallWalk walk_;
-  Lattice lattice_;                                 ///< of half the spacing
+  Squares lattice_;                                 ///< of half the spacing
   std::unordered_map<std::int64_t, bool> blocked_;  ///< middles of its cells; only asked, never walked through
   std::vector<Marker> markers_, before_;
   std::vector<Marker*> moving_;

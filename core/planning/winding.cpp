@@ -15,7 +15,7 @@ namespace {
 /// Winding numbers of cell middles, by counting along each row the edges that cross it west of a cell.
 class Raster {
  public:
-  Raster(const std::vector<Marker>& polygon, const Lattice& lattice) : lattice_{lattice} {
+  Raster(const std::vector<Marker>& polygon, const Squares& lattice) : lattice_{lattice} {
     double south = 1e9, west = 1e9, north = -1e9, east = -1e9;
     for (const auto& m : polygon) {
       south = std::min(south, row_of(m));
@@ -66,7 +66,7 @@ class Raster {
     }
   }
 
-  Lattice lattice_;
+  Squares lattice_;
   std::int64_t south_{}, west_{}, rows_{}, columns_{};
   std::vector<std::int16_t> winds_;
 };
@@ -74,7 +74,7 @@ class Raster {
 /// Winding numbers of any places: the edges of a polygon by the rows that they cross.
 class Rows {
  public:
-  Rows(const std::vector<Marker>& polygon, const Lattice& lattice) : polygon_{polygon}, lattice_{lattice} {
+  Rows(const std::vector<Marker>& polygon, const Squares& lattice) : polygon_{polygon}, lattice_{lattice} {
     double south = 1e18, north = -1e18;
     for (const auto& m : polygon) {
       south = std::min(south, row_of(m.lat));
@@ -107,13 +107,13 @@ class Rows {
   [[nodiscard]] const Marker& after(std::size_t i) const { return polygon_[i + 1 == polygon_.size() ? 0 : i + 1]; }
 
   const std::vector<Marker>& polygon_;
-  Lattice lattice_;
+  Squares lattice_;
   double south_{};
   std::vector<std::vector<std::uint32_t>> edges_;
 };
 
 /// Beside a coast: see deep_inside.
-bool deep_beside_coast(const Marker& m, const Rows& rows, const Lattice& lattice, const Surroundings& around) {
+bool deep_beside_coast(const Marker& m, const Rows& rows, const Squares& lattice, const Surroundings& around) {
   constexpr std::array kParts{1.0 / 64, 1.0 / 4};
   const double s = std::sqrt(0.5);
   const std::array<std::array<double, 2>, 8> turns{
@@ -129,12 +129,12 @@ bool deep_beside_coast(const Marker& m, const Rows& rows, const Lattice& lattice
 
 }  // namespace
 
-Lattice Lattice::about(double lat, double lon, double cell_m) {
+Squares Squares::about(double lat, double lon, double cell_m) {
   const auto metric = LocalMetric::at(lat);
   return {lat, lon, metric.meridian_radius / cell_m, metric.parallel_radius / cell_m};
 }
 
-std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice, const Surroundings& around,
+std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Squares& lattice, const Surroundings& around,
                               const std::vector<bool>& asked) {
   std::optional<Raster> raster;
   std::optional<Rows> rows;

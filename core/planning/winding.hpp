@@ -23,10 +23,10 @@ struct Marker {
 };
 
 /// Cells in rows and columns about an origin, in radians: of one size in metres at the origin's latitude.
-struct Lattice {
+struct Squares {
   double lat{}, lon{};          ///< a corner of cell (0, 0)
   double per_lat{}, per_lon{};  ///< cells per radian
-  static Lattice about(double lat, double lon, double cell_m);
+  static Squares about(double lat, double lon, double cell_m);
 };
 
 /// What lies around a marker.
@@ -44,7 +44,7 @@ struct Surroundings {
 /// Time: edges × the rows they cross, plus one pass over the cells of the polygon's box (2 bytes each), plus for a marker
 /// beside a coast 16 times the edges in a row.
 /// Only of those that are `asked` after; of the others it is false.
-std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Lattice& lattice, const Surroundings& around,
+std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Squares& lattice, const Surroundings& around,
                               const std::vector<bool>& asked);
 
 }  // namespace glidehelm::planning

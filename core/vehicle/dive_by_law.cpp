@@ -11,9 +11,9 @@ namespace {
 
 constexpr double kStep = 120.0;       // seconds
 constexpr double kYoStep = 60.0;      // seconds: 9 m of depth for a usual glider
-constexpr double kNoMoreTime = 1e-6;  // seconds
+constexpr double kNoTimeLeft = 1e-6;  // seconds
 constexpr double kIntoRing = 0.01;    // seconds past a ring's crossing
-constexpr double kNear = 50'000.0;    // metres: where a plane is good enough for a bearing
+constexpr double kPlane = 50'000.0;   // metres: where a plane is good enough for a bearing
 
 struct Vector {
   double east{}, north{};
@@ -25,7 +25,7 @@ struct Vector {
 Vector seen_from(double lat, double lon, GeoPoint to) {
   const double to_lat = to.lat.radians(), to_lon = to.lon.radians();
   const auto offset = local_offset(lat, lon, to_lat, to_lon);
-  if (offset.length() > kNear) {
+  if (offset.length() > kPlane) {
     const auto line = geodesic(GeoPoint::from_kernel(lat, lon), to);
     return {line.length.si() * line.departing.east(), line.length.si() * line.departing.north()};
   }
@@ -56,7 +56,7 @@ class Dive {
     const double until = begin_ + seconds, u_hat = flight_.glider.believed_speed.si();
     const double longest = waters_.full ? kYoStep : kStep;
     bool first = true;
-    while (until - here_.t_s > kNoMoreTime) {
+    while (until - here_.t_s > kNoTimeLeft) {
       const Vector aim = next_aim(points, target, loops);
       const double heading = steered_heading(std::atan2(aim.east, aim.north), believed_, flight_.glider.believed_speed);
       const double truly = heading + flight_.glider.heading_bias.si();

@@ -20,8 +20,8 @@ namespace {
 using chart::coast_degrees;
 using chart::CoastArea;
 
-constexpr std::int64_t kDegree = 10'000'000;
-constexpr std::int64_t kSmallestSide = kDegree / 100;
+constexpr std::int64_t kUnitsPerDegree = 10'000'000;
+constexpr std::int64_t kSmallestSide = kUnitsPerDegree / 100;
 /// Side of the parts in which a large area is cut, degrees: some seconds each.
 constexpr std::int64_t kPart = 20;
 /// Border stretches shorter than this (110 m) are not asked about: the shore is too near for one point to tell.
@@ -82,8 +82,12 @@ struct Part {
 /// The area and at least a little around it, in whole degrees: GSHHG stores shorelines in bins of one degree, so that
 /// there lines of neighbouring parts end in exactly the same points.
 std::vector<Part> parts_of(const CoastArea& area) {
-  const auto below = [](std::int64_t v) { return (v >= 0 ? (v + kDegree - 1) / kDegree : v / kDegree) - 1; };
-  const auto above = [](std::int64_t v) { return (v >= 0 ? v / kDegree : -((-v + kDegree - 1) / kDegree)) + 1; };
+  const auto below = [](std::int64_t v) {
+    return (v >= 0 ? (v + kUnitsPerDegree - 1) / kUnitsPerDegree : v / kUnitsPerDegree) - 1;
+  };
+  const auto above = [](std::int64_t v) {
+    return (v >= 0 ? v / kUnitsPerDegree : -((-v + kUnitsPerDegree - 1) / kUnitsPerDegree)) + 1;
+  };
   const auto west = below(area.west), east = above(area.east), south = below(area.south), north = above(area.north);
   std::vector<Part> parts;
   for (auto s = south; s < north; s += kPart)
@@ -160,7 +164,7 @@ Expected<bool, std::string> even_is_land(const CoastCut& cut, const CoastArea& a
   std::string input;
   for (std::size_t k = 0; k < questions.size(); ++k) {
     auto lon = area.west + questions[k].at.x;
-    if (lon >= 180 * kDegree) lon -= 360 * kDegree;
+    if (lon >= 180 * kUnitsPerDegree) lon -= 360 * kUnitsPerDegree;
     input += coast_degrees(lon) + " " + coast_degrees(questions[k].at.y) + " " + std::to_string(k) + "\n";
   }
   auto request = gmt({"select", "-Df", "-Ns/k/s/k/s"});
@@ -284,7 +288,7 @@ Expected<CoastArea, std::string> coast_area(const std::string& text) {
     const auto value = number_from(rest.substr(0, slash));
     if (!value || std::abs(*value) > 360)
       return unexpected(kAllowed + std::string{"; found '"} + text.substr(0, 80) + "'");
-    sides.push_back(std::llround(*value * static_cast<double>(kDegree)));
+    sides.push_back(std::llround(*value * static_cast<double>(kUnitsPerDegree)));
     if (slash == std::string_view::npos) break;
     rest.remove_prefix(slash + 1);
   }
@@ -292,10 +296,11 @@ Expected<CoastArea, std::string> coast_area(const std::string& text) {
   if (sides.size() != 4)
     return refused("'" + text.substr(0, 80) + "' has " + std::to_string(sides.size()) + " numbers");
   CoastArea area{sides[0], sides[1], sides[2], sides[3]};
-  if (area.west < -180 * kDegree || area.west > 180 * kDegree) return refused("W is not from -180 to 180");
-  if (area.west == 180 * kDegree) area.west = -180 * kDegree;
-  while (area.east <= area.west) area.east += 360 * kDegree;
-  while (area.east - area.west > 360 * kDegree) area.east -= 360 * kDegree;
+  if (area.west < -180 * kUnitsPerDegree || area.west > 180 * kUnitsPerDegree)
+    return refused("W is not from -180 to 180");
+  if (area.west == 180 * kUnitsPerDegree) area.west = -180 * kUnitsPerDegree;
+  while (area.east <= area.west) area.east += 360 * kUnitsPerDegree;
+  while (area.east - area.west > 360 * kUnitsPerDegree) area.east -= 360 * kUnitsPerDegree;
   if (area.width() > CoastArea::kWidest) return refused("E is more than 180 degrees east of W");
   if (area.south > area.north) return refused("S is north of N");
   if (area.width() < kSmallestSide || area.height() < kSmallestSide) return refused("the area is too small");

@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t kNodesAtMost = 40'000, kAllAtMost = 1'500'000;
 
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 std::size_t every(std::size_t count, std::size_t step) { return (count + step - 1) / step; }
 
 std::vector<double> thinned(const std::vector<double>& axis, std::size_t step) {
@@ -74,7 +70,7 @@ std::size_t nearest_level(const std::vector<double>& depths, double depth) {
 
 std::string misuse_of(const FieldAnimateOptions& options) {
   if (options.files.empty()) return "no file was named";
-  if (!ends_with(options.out, ".html") && !ends_with(options.out, ".kml"))
+  if (!options.out.ends_with(".html") && !options.out.ends_with(".kml"))
     return "--out " + options.out + ": allowed is a name that ends in .html or .kml";
   if (options.depth_m && !(*options.depth_m >= 0)) return "--depth is positive down, allowed is 0 or more";
   return {};
@@ -134,7 +130,7 @@ int run_field_animate(const FieldAnimateOptions& options, world::World& world, s
     err << "glidehelm field: warning: the files have no depths: --depth changes nothing\n";
   const std::size_t level = options.depth_m ? nearest_level(view.axes.depths_m, *options.depth_m) : 0;
   const auto animation = animation_of(view, level, coast.get());
-  const auto bytes = ends_with(options.out, ".html") ? animation_page(animation) : animation_kml(animation);
+  const auto bytes = options.out.ends_with(".html") ? animation_page(animation) : animation_kml(animation);
   if (const auto wrong = write_new_file(options.out, bytes, world.files); !wrong.empty())
     return refuse_field(err, 1, wrong);
   out << options.out << ": " << animation.frames() << (animation.frames() == 1 ? " time, " : " times, ")

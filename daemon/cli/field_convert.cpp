@@ -16,10 +16,6 @@ namespace {
 using simulator::ClassicAttribute;
 using simulator::ClassicVariable;
 
-bool ends_with(const std::string& text, std::string_view end) {
-  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
-}
-
 /// Keeps the times within [from, to]; false when none is left. A field without a time axis is kept as it is.
 bool keep_times(ocean::Grid& grid, const FieldConvertOptions& options) {
   if (!grid.axes.has_time || (!options.from && !options.to)) return true;
@@ -119,7 +115,7 @@ std::string netcdf_file(const ocean::Grid& grid, const std::string& cell_methods
 
 std::string misuse_of(const FieldConvertOptions& options) {
   if (options.files.empty()) return "no file was named";
-  if (!ends_with(options.out, ".nc") && !ends_with(options.out, ".grid"))
+  if (!options.out.ends_with(".nc") && !options.out.ends_with(".grid"))
     return "--out " + options.out + ": allowed is a name that ends in .nc (CF NetCDF) or .grid (flat grid)";
   if (options.depth_mean && !(options.depth_mean->first >= 0 && options.depth_mean->second > options.depth_mean->first))
     return "--depth-mean MIN,MAX: allowed is 0 ≤ MIN < MAX";
@@ -162,7 +158,7 @@ int run_field_convert(const FieldConvertOptions& options, world::World& world, s
     err << "glidehelm field: warning: filled gaps are written like published values; leave out --fill-gaps to keep "
            "them apart\n";
 
-  const bool netcdf = ends_with(options.out, ".nc");
+  const bool netcdf = options.out.ends_with(".nc");
   // The classic format counts the bytes of a variable with 32 bits.
   if (netcdf && grid.axes.nodes() >= (std::size_t{1} << 30))
     return refuse_field(err, 1, "more than 4 GiB in one variable, which the format cannot hold; cut it with --box");

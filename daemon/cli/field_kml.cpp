@@ -12,7 +12,6 @@ namespace {
 
 constexpr std::size_t kArrowsAcross = 20, kFramesAtMost = 120;
 constexpr std::size_t kClasses = 5;
-constexpr double kDegree = 3.14159265358979323846 / 180;
 // Of KML: alpha, blue, green, red.
 constexpr std::array<const char*, kClasses> kColours{"ffa83e35", "ffb07d2a", "ff7cb43c", "ff3ac9f0", "ff2b4be8"};
 

@@ -20,8 +20,6 @@ namespace glidehelm::cli {
 
 namespace {
 
-constexpr double kDegree = kPi / 180.0;
-
 /// An ocean to fly in, and the same as a planner would see it.
 struct TrueOcean {
   simulator::PerturbedField full, surface, dive;

@@ -8,7 +8,7 @@ namespace glidehelm::ingest {
 
 namespace {
 
-std::string text_of(double value) {
+std::string rounded(double value) {
   char buffer[40];
   std::snprintf(buffer, sizeof buffer, "%.3g", value);
   return buffer;
@@ -79,7 +79,7 @@ Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& unit
   for (const auto* axis : {&out.times, &out.depths, &out.lats, &out.lons})
     nodes *= static_cast<double>(axis->values.size());
   if (nodes > options.nodes_at_most)
-    return fault("it has " + text_of(nodes) + " nodes, allowed is " + text_of(options.nodes_at_most) +
+    return fault("it has " + rounded(nodes) + " nodes, allowed is " + rounded(options.nodes_at_most) +
                  "; cut it with --area W/E/S/N");
   return out;
 }

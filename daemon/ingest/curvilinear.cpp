@@ -14,8 +14,6 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = kPi / 180;
 constexpr double kAgreement = 3 * kDegree, kOblique = 10 * kDegree;
 
 std::string degrees_text(double radians) {

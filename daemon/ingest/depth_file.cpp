@@ -21,7 +21,6 @@ namespace {
 
 using Positive = DepthOptions::Positive;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kAskPositive =
     "say --positive up (heights: the sea is negative) or --positive down (depths: the sea is positive)";
 

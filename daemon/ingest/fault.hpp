@@ -1,11 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "core/base/expected.hpp"
 
 /// The program that turns published forecasts into one flat grid. The only room that knows NetCDF and UDUNITS.
 namespace glidehelm::ingest {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();  ///< no value
 
 /// Why a file is refused: what, where in the file, what is allowed.
 struct Fault {
@@ -18,6 +21,9 @@ struct Fault {
 template <class T>
 using Result = Expected<T, Fault>;
 inline Unexpected<Fault> fault(std::string what) { return unexpected(Fault{std::move(what)}); }
+/// Numbers in a message, as printf writes them; `format` is ours and takes what it is given.
+std::string printed(const char* format, double a, double b = 0);
+
 inline Unexpected<Fault> fault_alone(std::string what) { return unexpected(Fault{std::move(what), false, true}); }
 
 }  // namespace glidehelm::ingest

@@ -13,8 +13,6 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 /// Where values around a node lie, and their weighted sum.
 struct Neighbours {
   std::array<bool, 8> sectors{};

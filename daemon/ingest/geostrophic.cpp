@@ -12,7 +12,6 @@ namespace glidehelm::ingest {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = kPi / 180;
 
 /// The slope at a node from its neighbours at the distances `back` (towards smaller) and `ahead`, NaN when neither has a
 /// height.

@@ -15,8 +15,6 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 using Names = std::pair<std::string_view, std::string_view>;
 
 /// Latitude and longitude of centres, by the models that write them.
@@ -42,10 +40,6 @@ constexpr std::array<Names, 5> kFacesOfV{{{"gphiv", "glamv"},
                                           {"YG", "XC"}}};
 
 bool contains(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-
 bool is_field(const Variable& variable) { return is_number(variable.type) && variable.dimensions.size() >= 2; }
 
 std::size_t length(const Found& found, std::size_t from_last) {
@@ -367,8 +361,8 @@ constexpr std::array<KnownPair, 8> kKnown{{{"u_eastward", "v_northward", Sense::
 /// What the attributes of a component say about its direction.
 Sense sense_of(const Variable& u) {
   const auto standard = lower(u.text("standard_name")), words = lower(u.text("long_name"));
-  if (ends_with(standard, "eastward_sea_water_velocity")) return Sense::east_north;
-  if (contains(standard, "sea_water") && ends_with(standard, "x_velocity")) return Sense::grid_axes;
+  if (standard.ends_with("eastward_sea_water_velocity")) return Sense::east_north;
+  if (contains(standard, "sea_water") && standard.ends_with("x_velocity")) return Sense::grid_axes;
   if (contains(words, "eastward") || contains(words, "zonal")) return Sense::east_north;
   for (const char* part : {"u-momentum", "x-direction", "x-axis", "i-axis", "xi-direction", "along x", "grid x"})
     if (contains(words, part)) return Sense::grid_axes;
@@ -377,8 +371,8 @@ Sense sense_of(const Variable& u) {
 
 bool is_u(const Variable& variable) {
   const auto standard = lower(variable.text("standard_name"));
-  return is_field(variable) && (ends_with(standard, "eastward_sea_water_velocity") ||
-                                (contains(standard, "sea_water") && ends_with(standard, "_x_velocity")));
+  return is_field(variable) && (standard.ends_with("eastward_sea_water_velocity") ||
+                                (contains(standard, "sea_water") && standard.ends_with("_x_velocity")));
 }
 
 /// The standard_name of the other component.
@@ -440,8 +434,8 @@ Result<std::optional<ModelVelocity>> model_velocity(const ModelFiles& files, con
 Found lone_component(const NetcdfFile& file, bool u) {
   for (const auto& variable : file.variables()) {
     const auto standard = lower(variable.text("standard_name"));
-    const bool is_v = ends_with(standard, "northward_sea_water_velocity") ||
-                      (contains(standard, "sea_water") && ends_with(standard, "_y_velocity"));
+    const bool is_v = standard.ends_with("northward_sea_water_velocity") ||
+                      (contains(standard, "sea_water") && standard.ends_with("_y_velocity"));
     if (is_field(variable) && (u ? is_u(variable) : is_v)) return {&file, &variable};
   }
   for (const auto& known : kKnown) {

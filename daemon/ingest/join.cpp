@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
+#include <filesystem>
 #include <iterator>
 #include <numeric>
 #include <tuple>
@@ -14,8 +15,6 @@
 namespace glidehelm::ingest {
 
 namespace {
-
-std::string base_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 Result<Done> same_axis(const std::vector<double>& a, const std::vector<double>& b, const char* name, const Part& first,
                        const Part& other) {
@@ -184,7 +183,7 @@ std::vector<std::string> gathered_warnings(const std::vector<Part>& parts) {
     }
   std::vector<std::string> warnings;
   for (const auto& [text, files] : by_text)
-    warnings.push_back(files.size() == 1 ? base_name(parts[files[0]].file) + ": " + text
+    warnings.push_back(files.size() == 1 ? std::filesystem::path{parts[files[0]].file}.filename().string() + ": " + text
                                          : std::to_string(files.size()) + " files: " + text);
   return warnings;
 }

@@ -16,14 +16,7 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNodesAtMost = 5e8;  // 4 GB of floats, beside which the planes of one time are small
-
-std::string text_of(const char* format, double value) {
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, format, value);
-  return buffer;
-}
 
 /// The rectangle of centres that is read.
 struct Window {
@@ -99,7 +92,7 @@ Result<Mask> mask_of(const ModelFiles& files, std::initializer_list<std::string_
     for (std::size_t k = 0; k < values->size(); ++k) {
       const double value = (*values)[k];
       if (!std::isnan(value) && value != 0 && value != 1)
-        return fault("mask " + found.variable->name + " holds " + text_of("%.6g", value) +
+        return fault("mask " + found.variable->name + " holds " + printed("%.6g", value) +
                      ", allowed is 0 (land) and 1 (water)");
       mask.wet[k] = value == 1 ? 1 : 0;
     }
@@ -290,7 +283,7 @@ Result<std::optional<Rotation>> rotation_for(const ModelFiles& files, const Mode
     if (most > 0.5 * kPi / 180)
       return fault(velocity.u.variable->name + " and " + velocity.v.variable->name +
                    " may be east and north or along the grid's axes, which are turned by up to " +
-                   text_of("%.1f°", most * 180 / kPi) + "; say which with --rotation none or --rotation grid");
+                   printed("%.1f°", most * 180 / kPi) + "; say which with --rotation none or --rotation grid");
   }
   for (std::size_t k = 0; k < rotation->theta.size(); ++k)
     if (std::isnan(rotation->theta[k])) rotation->theta[k] = 0;  // a point without neighbours holds no node
@@ -395,7 +388,7 @@ void settle_depths(Job& job) {
     if (h[n] > deepest && (wet.empty() || wet[n] != 0)) deepest = h[n];
   job.depths = fixed_depths(deepest);
   job.levels.words +=
-      ", brought onto " + std::to_string(job.depths.size()) + " depths to " + text_of("%.0f m", job.depths.back());
+      ", brought onto " + std::to_string(job.depths.size()) + " depths to " + printed("%.0f m", job.depths.back());
 }
 
 Result<Done> fill(const Job& job, const Remap& remap, ocean::Grid& grid) {
@@ -455,9 +448,9 @@ Result<Done> check_size(const ocean::GridAxes& axes, double allowed) {
   double nodes = 1;  // in floating point, which does not wrap
   for (const auto size : {times, depths, rows, columns}) nodes *= static_cast<double>(size);
   if (nodes <= allowed) return Done{};
-  return fault("brought onto latitudes and longitudes it has " + text_of("%.3g", nodes) + " nodes (" +
+  return fault("brought onto latitudes and longitudes it has " + printed("%.3g", nodes) + " nodes (" +
                std::to_string(times) + " times, " + std::to_string(depths) + " depths, " + std::to_string(rows) +
-               " by " + std::to_string(columns) + "), allowed is " + text_of("%.3g", allowed) +
+               " by " + std::to_string(columns) + "), allowed is " + printed("%.3g", allowed) +
                "; cut it with --area W/E/S/N");
 }
 

@@ -11,7 +11,7 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNodesAtMost = 4e7;
+constexpr double kRemoteNodesAtMost = 4e7;
 
 bool begins_with(const std::string& text, const char* begin) { return text.compare(0, std::strlen(begin), begin) == 0; }
 
@@ -76,7 +76,7 @@ Expected<Part, AddressFault> read_address(const std::string& address, const Unit
   if (has_password(address))
     return unexpected(
         AddressFault{"an address with a name and password would stand in every log; it is not read", false});
-  options.nodes_at_most = std::min(options.nodes_at_most, kNodesAtMost);
+  options.nodes_at_most = std::min(options.nodes_at_most, kRemoteNodesAtMost);
   auto opened = NetcdfFile::open_address(address);
   if (!opened) return passing(opened.error().what);
   const auto file = one_member(std::move(opened), options.member);

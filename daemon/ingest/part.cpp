@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -35,11 +36,6 @@ double reference_time(const NetcdfFile& file, const Units& units) {
   for (const char* name : {"forecast_reference_time", "bulletin_date"})
     if (const auto time = utc_from_text(file.text(name))) return epoch_seconds(*time);
   return kNone;
-}
-
-std::string base_name(const std::string& path) {
-  const auto slash = path.rfind('/');
-  return slash == std::string::npos ? path : path.substr(slash + 1);
 }
 
 /// What reading one file needs all the way.
@@ -94,7 +90,7 @@ Result<Done> read_into(Reading& reading, const Variable& variable, const std::st
 void tell_cycle(Reading& reading, const std::string& name) {
   auto& facts = reading.part.grid.facts;
   facts.reference_s = reference_time(reading.file, reading.units);
-  facts.cycle = base_name(name);
+  facts.cycle = std::filesystem::path{name}.filename().string();
   if (!std::isnan(facts.reference_s))
     facts.cycle += ", cycle " + utc_text(instant_at(facts.reference_s));
   else if (reading.part.grid.axes.has_time)

@@ -16,18 +16,12 @@ namespace {
 constexpr double kRefusedSpeed = 5.0, kWarnedSpeed = 3.5;
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
-std::string text_of(const char* format, double a, double b) {
-  char buffer[96];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
-
 std::string place_text(const ocean::GridAxes& axes, std::size_t node) {
   const std::size_t columns = axes.lons_deg.size(), rows = axes.lats_deg.size(), depths = axes.depths_m.size();
   const std::size_t i = node % columns, j = node / columns % rows, z = node / columns / rows % depths,
                     t = node / columns / rows / depths;
-  std::string text = text_of("%.4f, %.4f", axes.lats_deg[j], axes.lons_deg[i]);
-  if (axes.has_depth) text += text_of(", %.1f m", axes.depths_m[z], 0);
+  std::string text = printed("%.4f, %.4f", axes.lats_deg[j], axes.lons_deg[i]);
+  if (axes.has_depth) text += printed(", %.1f m", axes.depths_m[z], 0);
   if (axes.has_time) text += ", " + utc_text(instant_at(axes.times_s[t]));
   return text;
 }
@@ -104,10 +98,10 @@ Result<Done> check_speeds(const ocean::Grid& grid, std::vector<std::string>& war
   }
   const double fastest = std::sqrt(squared);
   if (fastest > kRefusedSpeed)
-    return fault("a current of " + text_of("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node) +
+    return fault("a current of " + printed("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node) +
                  ", allowed is at most 5 m/s (is the unit right?)");
   if (fastest > kWarnedSpeed)
-    warnings.push_back("a current of " + text_of("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node));
+    warnings.push_back("a current of " + printed("%.2f m/s", fastest, 0) + " at " + place_text(axes, fastest_node));
   return Done{};
 }
 
@@ -165,7 +159,7 @@ std::string unwritten_end(const ocean::Grid& grid) {
                 return "the " + std::string{side == 0 ? "eastward" : "northward"} + " current of the " +
                        std::to_string(found) + " " + where + " of " + std::to_string(ways[way].count) +
                        (way == 0 ? " rows" : " columns") +
-                       (axes.has_depth ? text_of(" at %.1f m", axes.depths_m[z], 0) : "") + " is exactly zero at " +
+                       (axes.has_depth ? printed(" at %.1f m", axes.depths_m[z], 0) : "") + " is exactly zero at " +
                        utc_text(instant_at(axes.times_s[t])) + ", and is not at " +
                        utc_text(instant_at(axes.times_s[neighbour])) + ": its writer probably ended there";
               }

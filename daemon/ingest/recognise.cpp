@@ -33,10 +33,6 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kKnownNa
      {"ubar", "vbar"}}};
 constexpr std::array<std::string_view, 5> kHeightNames{"adt", "zos", "ssh", "surf_el", "sossheig"};
 
-bool ends_with(std::string_view text, std::string_view end) {
-  return text.size() >= end.size() && text.substr(text.size() - end.size()) == end;
-}
-bool begins_with(std::string_view text, std::string_view begin) { return text.substr(0, begin.size()) == begin; }
 bool one_of(std::string_view text, std::initializer_list<std::string_view> list) {
   return std::find(list.begin(), list.end(), text) != list.end();
 }
@@ -46,8 +42,8 @@ bool could_be_velocity(const Variable& variable) { return is_number(variable.typ
 bool looks_like(const Variable& variable, bool latitude) {
   const std::string name = lower(variable.name), standard = lower(variable.text("standard_name"));
   const std::string_view word = latitude ? "lat" : "lon";
-  return standard == (latitude ? "latitude" : "longitude") || begins_with(name, word) ||
-         begins_with(name, latitude ? "nav_lat" : "nav_lon");
+  return standard == (latitude ? "latitude" : "longitude") || name.starts_with(word) ||
+         name.starts_with(latitude ? "nav_lat" : "nav_lon");
 }
 
 /// A two-dimensional latitude: the mark of a curvilinear grid.
@@ -133,7 +129,7 @@ std::vector<const Variable*> by_standard_name(const NetcdfFile& file, std::strin
   std::vector<const Variable*> exact, prefixed;
   for (const auto& variable : file.variables()) {
     const auto name = lower(variable.text("standard_name"));
-    if (!could_be_velocity(variable) || !ends_with(name, end)) continue;
+    if (!could_be_velocity(variable) || !name.ends_with(end)) continue;
     (name == end ? exact : prefixed).push_back(&variable);
   }
   return exact.empty() ? prefixed : exact;
@@ -146,7 +142,7 @@ bool contains(const std::vector<const Variable*>& list, const Variable* variable
 /// "eastward_x" and "northward_x".
 std::optional<VelocityPair> by_prefix(const NetcdfFile& file) {
   for (const auto& variable : file.variables()) {
-    if (!could_be_velocity(variable) || !begins_with(variable.name, "eastward_")) continue;
+    if (!could_be_velocity(variable) || !variable.name.starts_with("eastward_")) continue;
     const auto* north = file.find("northward_" + variable.name.substr(9));
     if (north != nullptr && could_be_velocity(*north)) return VelocityPair{&variable, north, "name " + variable.name};
   }
@@ -207,8 +203,8 @@ std::vector<LoneComponent> velocity_components(const NetcdfFile& file) {
     consider(named(file, north_name), false, "name " + std::string{north_name});
   }
   for (const auto& variable : file.variables()) {
-    if (begins_with(variable.name, "eastward_")) consider(&variable, true, "name " + variable.name);
-    if (begins_with(variable.name, "northward_")) consider(&variable, false, "name " + variable.name);
+    if (variable.name.starts_with("eastward_")) consider(&variable, true, "name " + variable.name);
+    if (variable.name.starts_with("northward_")) consider(&variable, false, "name " + variable.name);
   }
   return found;
 }
@@ -241,8 +237,8 @@ Role role_of(const Variable& variable) {
   if (standard == "longitude") return Role::longitude;
   if (standard == "time") return Role::time;
   if (standard == "depth") return Role::depth;
-  if (begins_with(standard, "projection_") || begins_with(standard, "grid_l")) return Role::projected;
-  if (begins_with(standard, "ocean_s") || begins_with(standard, "ocean_double_sigma")) return Role::terrain;
+  if (standard.starts_with("projection_") || standard.starts_with("grid_l")) return Role::projected;
+  if (standard.starts_with("ocean_s") || standard.starts_with("ocean_double_sigma")) return Role::terrain;
   if (one_of(unit, {"degrees_north", "degree_north", "degrees_n", "degree_n", "degreesn", "degreen"}))
     return Role::latitude;
   if (one_of(unit, {"degrees_east", "degree_east", "degrees_e", "degree_e", "degreese", "degreee"}))
@@ -254,8 +250,8 @@ Role role_of(const Variable& variable) {
   if (axis == "Z") return Role::depth;
   if (one_of(name, {"lat", "latitude", "nav_lat"})) return Role::latitude;
   if (one_of(name, {"lon", "longitude", "nav_lon", "long"})) return Role::longitude;
-  if (one_of(name, {"time", "t", "mt", "time_counter", "valid_time"}) || ends_with(name, "_time")) return Role::time;
-  if (one_of(name, {"z", "lev", "level"}) || begins_with(name, "depth")) return Role::depth;
+  if (one_of(name, {"time", "t", "mt", "time_counter", "valid_time"}) || name.ends_with("_time")) return Role::time;
+  if (one_of(name, {"z", "lev", "level"}) || name.starts_with("depth")) return Role::depth;
   if (one_of(name, {"s_rho", "s_w", "sigma", "siglay", "siglev"})) return Role::terrain;
   if (axis == "X" || axis == "Y") return Role::projected;
   return Role::none;

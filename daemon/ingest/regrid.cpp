@@ -12,15 +12,7 @@ namespace glidehelm::ingest {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kDegree = kPi / 180;
 constexpr double kWidestCell = 90;  // degrees of longitude
-
-std::string text_of(const char* format, double a, double b) {
-  char buffer[128];
-  std::snprintf(buffer, sizeof buffer, format, a, b);
-  return buffer;
-}
 
 /// Index of the face `side` (0 before, 1 behind) of a centre; nothing where the mesh ends.
 std::optional<std::size_t> face_of(const Faces& faces, std::size_t j, std::size_t i, int side) {
@@ -101,8 +93,8 @@ Result<TargetAxes> even_axes(const Mesh& mesh, std::size_t levels) {
   } else {
     axes.lons = counted(multiples(west, west + span, dlon));
   }
-  axes.words = "brought onto " + text_of("%.5g° of latitude by %.5g° of longitude", dlat, dlon) +
-               text_of(fine ? " (half the finer median spacing of its points, %.0f m)"
+  axes.words = "brought onto " + printed("%.5g° of latitude by %.5g° of longitude", dlat, dlon) +
+               printed(fine ? " (half the finer median spacing of its points, %.0f m)"
                             : " (the finer median spacing of its points, %.0f m)",
                        fine ? 2 * step_m : step_m, 0);
   return axes;

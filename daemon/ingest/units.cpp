@@ -177,17 +177,16 @@ std::optional<TimeScaling> special_unit(const std::string& unit) {
 
 double TimeScaling::operator()(double value) const {
   if (kind == Kind::linear) return slope * value + intercept;
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (kind == Kind::coded) {
-    if (!(value >= 1e6 && value < 1e8)) return kNone;
+    if (!(value >= 1e6 && value < 1e8)) return kNaN;
     const int whole = static_cast<int>(std::floor(value));
     const Date date{whole / 10000, whole / 100 % 100, whole % 100};
-    if (!exists(date, Calendar::proleptic)) return kNone;
+    if (!exists(date, Calendar::proleptic)) return kNaN;
     // A double holds 20240131.25 to 4e-9 of a day, 0.3 ms.
     return (static_cast<double>(proleptic_days(date)) + (value - whole)) * 86400.0;
   }
   const double seconds = slope * value + intercept;
-  if (!(std::abs(seconds) < 1e12)) return kNone;
+  if (!(std::abs(seconds) < 1e12)) return kNaN;
   const double day_number = std::floor(seconds / 86400.0);
   const auto days = static_cast<std::int64_t>(day_number);
   std::int64_t year = days / 365, day = days % 365;

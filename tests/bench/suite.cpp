@@ -11,13 +11,15 @@
 
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/lower_bound.hpp"
 #include "core/planning/refinement.hpp"
 #include "core/planning/registry.hpp"
 #include "tests/bench/case_suite.hpp"
 #include "tests/support/random_sea.hpp"
 
 // Every method on every case of the suite, in the form of the Thesis's tables 5.5, 5.6, 5.8 to 5.11, 5.13 and 5.14, and how far each is
-// from the best plan of constant-heading stints that many searches, each refined, have found.
+// from the best plan of constant-heading stints that many searches, each refined, have found. The certificate stands beside every case that
+// can be arrived in; a plan earlier than its bound is printed as WRONG, and the program then ends with 1.
 //
 //   suite [CASES [STARTS]]     cases of each kind (default: all), searches behind the best known plan (default 12)
 
@@ -36,7 +38,8 @@ struct Sheet {
   std::string title;
   std::vector<suite::Case> cases;
   std::map<std::string, std::vector<Answer>> answers;
-  std::vector<double> best_known;  ///< seconds; NaN where nothing arrives
+  std::vector<double> best_known;                      ///< seconds; NaN where nothing arrives
+  std::vector<std::optional<planning::Bound>> bounds;  ///< none: not asked for
 };
 
 Answer ask(const suite::Case& c, const std::string& method) {
@@ -76,6 +79,15 @@ double best_known(const suite::Case& c, int starts) {
     polish(shaken);
   }
   return best - c.problem.start.fix_s;
+}
+
+/// The certificate, looking closely only below the best arrival that is known.
+std::optional<planning::Bound> bound_of(const suite::Case& c, double earliest_s) {
+  planning::BoundSettings settings;
+  if (!std::isnan(earliest_s)) settings.earlier_than_s = c.problem.start.fix_s + earliest_s;
+  const auto bound = planning::lower_bound(c.problem, c.ocean(), c.chart(), {}, settings);
+  if (!bound) return std::nullopt;
+  return *bound;
 }
 
 std::string days(double seconds) {
@@ -169,6 +181,11 @@ void fill(Sheet& sheet, int starts) {
     const auto& c = sheet.cases[i];
     for (const auto& method : planning::method_names()) sheet.answers[method].push_back(ask(c, method));
     sheet.best_known.push_back(starts > 0 ? best_known(c, starts) : std::nan(""));
+    if (starts == 0) continue;
+    double earliest = sheet.best_known.back();
+    for (const auto& [method, answers] : sheet.answers)
+      if (answers.back().arrives && !(answers.back().travel_s >= earliest)) earliest = answers.back().travel_s;
+    sheet.bounds.push_back(bound_of(c, earliest));
   }
   std::fprintf(stderr, "\n");
 }
@@ -190,26 +207,69 @@ void print_cases(const Sheet& sheet) {
   }
 }
 
+/// Plan of `best` over certified bound, every case; how many plans of all methods lie below it; and whether `best` is the best.
+int print_certificates(const Sheet& sheet) {
+  int wrong = 0;
+  double worst_gap = 0, worst_bar = 0, behind = 0;
+  std::string behind_whom = "none";
+  std::printf("\n%-26s %10s %10s %8s %8s   the certificate\n", sheet.title.c_str(), "best", "bound", "bar", "gap");
+  for (std::size_t i = 0; i < sheet.bounds.size(); ++i) {
+    const auto& best = sheet.answers.at("best")[i];
+    const auto& bound = sheet.bounds[i];
+    const bool bounded = bound && bound->kind == planning::Bound::Kind::arrival;
+    for (const auto& [method, answers] : sheet.answers) {
+      const auto& a = answers[i];
+      if (!a.arrives) continue;
+      const bool proven_not = bound && bound->kind == planning::Bound::Kind::unreachable;
+      if (proven_not || (bounded && a.travel_s < bound->travel_s)) {
+        ++wrong;
+        std::printf("  WRONG: %s arrives before the bound in %s\n", method.c_str(), sheet.cases[i].name.c_str());
+      }
+      const double late = best.arrives ? best.travel_s / a.travel_s - 1 : 1;
+      if (late > behind) behind = late, behind_whom = method + " in " + sheet.cases[i].name;
+    }
+    if (!bounded || !best.arrives) {
+      std::printf("%-26s %s\n", sheet.cases[i].name.c_str(), bound ? bound->reason.c_str() : "no bound");
+      continue;
+    }
+    const double gap = best.travel_s / bound->travel_s - 1, bar = bound->error_s / bound->travel_s;
+    worst_gap = std::max(worst_gap, gap);
+    worst_bar = std::max(worst_bar, bar);
+    std::printf("%-26s %8.2f h %8.2f h %6.3f %% %6.3f %%\n", sheet.cases[i].name.c_str(), best.travel_s / 3600,
+                bound->travel_s / 3600, 100 * bar, 100 * gap);
+  }
+  std::printf(
+      "  worst gap %.3f %%, worst bar %.3f %%; plans earlier than the bound: %d; `best` behind a single method by at "
+      "most "
+      "%.2g of the travel time (%s)\n",
+      100 * worst_gap, 100 * worst_bar, wrong, behind, behind_whom.c_str());
+  return wrong;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
   const int starts = argc > 2 ? std::atoi(argv[2]) : 12;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  int wrong = 0;
   for (const double speed : {0.4, 0.2}) {
     char title[64];
     std::snprintf(title, sizeof title, "static 650 km, U = %.1f m/s", speed);
-    Sheet still{title, suite::static_cases(MetresPerSecond{speed}, std::min(count, 20)), {}, {}};
+    Sheet still{title, suite::static_cases(MetresPerSecond{speed}, std::min(count, 20)), {}, {}, {}};
     fill(still, starts);
     print_cases(still);
     print_arrivals(still);
+    wrong += print_certificates(still);
     std::snprintf(title, sizeof title, "dynamic 3-4 days, U = %.1f m/s", speed);
-    Sheet moving{title, suite::dynamic_cases(MetresPerSecond{speed}, std::min(count, 45)), {}, {}};
+    Sheet moving{title, suite::dynamic_cases(MetresPerSecond{speed}, std::min(count, 45)), {}, {}, {}};
     fill(moving, 0);
     print_distances(moving, "best");
   }
-  Sheet jet{"jet", suite::jet_cases(), {}, {}};
+  Sheet jet{"jet", suite::jet_cases(), {}, {}, {}};
   fill(jet, starts);
   print_cases(jet);
   print_arrivals(jet);
+  wrong += print_certificates(jet);
+  return wrong == 0 ? 0 : 1;
 }

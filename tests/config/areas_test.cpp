@@ -13,7 +13,7 @@ namespace {
 
 const char* const kTriangle = R"({"type": "Polygon", "coordinates": [[[-15, 28], [-14, 28], [-14, 29], [-15, 28]]]})";
 
-Lines errors(const std::string& safety, const std::map<std::string, std::string>& files = {}) {
+Lines area_errors(const std::string& safety, const std::map<std::string, std::string>& files = {}) {
   return test::errors_of(config::read_mission(test::six_lines(safety), "missions.d/m.yaml", test::files_of(files)));
 }
 std::string problem(const std::string& text) {
@@ -84,22 +84,23 @@ TEST_CASE("keep_in and keep_out name a GeoJSON file beside the mission, or hold 
 }
 
 TEST_CASE("mistakes in areas are named at their place in the mission") {
-  CHECK(errors("safety: {keep_in: a.geojson}\n") ==
+  CHECK(area_errors("safety: {keep_in: a.geojson}\n") ==
         Lines{"7:19 safety.keep_in: cannot read missions.d/a.geojson: No such file or directory"});
-  CHECK(errors("safety: {keep_in: a.geojson}\n", {{"missions.d/a.geojson", "{}"}}) ==
+  CHECK(area_errors("safety: {keep_in: a.geojson}\n", {{"missions.d/a.geojson", "{}"}}) ==
         Lines{"7:19 safety.keep_in: missions.d/a.geojson: no \"type\""});
-  CHECK(errors("safety: {keep_in: {a: 1}}\n") ==
+  CHECK(area_errors("safety: {keep_in: {a: 1}}\n") ==
         Lines{"7:19 safety.keep_in: neither polygons nor a path; found a map of keys; allowed: [[{lat_deg, lon_deg}, "
               "…], …] or the path of a GeoJSON file"});
-  CHECK(errors("safety:\n  keep_out:\n    - - {lat_deg: 1, lon_deg: 2}\n      - {lat_deg: 95, lon_deg: 2}\n      - "
-               "{lat_deg: 2, lon: 3}\n") ==
-        Lines{"10:19 safety.keep_out[0][1].lat_deg: latitude out of range; latitude and longitude swapped?; found 95; "
-              "allowed: -90 to 90 °",
-              "11:9 safety.keep_out[0][2].lon_deg: missing; the key is required",
-              "11:22 safety.keep_out[0][2].lon: unknown key; did you mean lon_deg?"});
-  CHECK(errors("safety: {keep_out: [[{lat_deg: 1, lon_deg: 2}, {lat_deg: 2, lon_deg: 2}]]}\n") ==
+  CHECK(
+      area_errors("safety:\n  keep_out:\n    - - {lat_deg: 1, lon_deg: 2}\n      - {lat_deg: 95, lon_deg: 2}\n      - "
+                  "{lat_deg: 2, lon: 3}\n") ==
+      Lines{"10:19 safety.keep_out[0][1].lat_deg: latitude out of range; latitude and longitude swapped?; found 95; "
+            "allowed: -90 to 90 °",
+            "11:9 safety.keep_out[0][2].lon_deg: missing; the key is required",
+            "11:22 safety.keep_out[0][2].lon: unknown key; did you mean lon_deg?"});
+  CHECK(area_errors("safety: {keep_out: [[{lat_deg: 1, lon_deg: 2}, {lat_deg: 2, lon_deg: 2}]]}\n") ==
         Lines{"7:21 safety.keep_out[0]: a list of another length; found 2; allowed: a list of at least 3"});
-  CHECK(errors(
+  CHECK(area_errors(
             "safety: {keep_out: [[{lat_deg: 1, lon_deg: 2}, {lat_deg: 2, lon_deg: 2}, {lat_deg: 1, lon_deg: 2}]]}\n") ==
         Lines{"7:21 safety.keep_out[0]: fewer than three different corners"});
 }

@@ -18,10 +18,10 @@ namespace {
 std::string with(const std::string& currents) {
   return "schema: glidehelm/mission/v1\nname: a1\nglider: b1\ngoal: {lat_deg: 29, lon_deg: -15}\n" + currents;
 }
-Lines errors(const std::string& currents) {
+Lines current_errors(const std::string& currents) {
   return test::errors_of(config::read_mission(with(currents), "m.yaml", no_files()));
 }
-mission::Currents read(const std::string& currents) {
+mission::Currents read_currents(const std::string& currents) {
   const auto file = config::read_mission_file(with(currents), "m.yaml", no_files());
   if (!file)
     for (const auto& error : file.error()) UNSCOPED_INFO(error.message());
@@ -39,7 +39,7 @@ std::string analytic(const std::string& rest) { return "currents: {analytic: {" 
 }  // namespace
 
 TEST_CASE("an analytic field has its scales and the parameters of its kind, those left out with their defaults") {
-  const auto c = read(analytic("kind: jet, t0: 2026-11-25T00:00Z, south: true, params: {epsilon: 0.1}"));
+  const auto c = read_currents(analytic("kind: jet, t0: 2026-11-25T00:00Z, south: true, params: {epsilon: 0.1}"));
   REQUIRE(c.files.empty());
   REQUIRE(c.analytic.size() == 1);
   const auto& jet = c.analytic[0];
@@ -73,7 +73,7 @@ TEST_CASE("every analytic kind is read with its parameters") {
       {"kind: tiled, params: {dynamic: true}", {{"dynamic", 1}}},
   }));
   CAPTURE(row.kind);
-  const auto c = read(analytic(row.kind));
+  const auto c = read_currents(analytic(row.kind));
   REQUIRE(c.analytic.size() == 1);
   CHECK(c.analytic[0].params == row.params);
 }
@@ -82,7 +82,7 @@ TEST_CASE("core/ocean makes a field of every kind that is read, with the same de
   for (const char* kind : {"constant, params: {u: 0, v: 0}", "source", "sink", "solid-body", "shear", "double-eddy",
                            "stuart", "tiled", "jet", "gaussians, params: {list: [[1, 0, 0, 1, 0, 1, 0, 0]]}"}) {
     CAPTURE(kind);
-    const auto c = read(analytic(std::string{"kind: "} + kind));
+    const auto c = read_currents(analytic(std::string{"kind: "} + kind));
     ocean::AnalyticSpec spec;
     spec.kind = c.analytic[0].kind;
     spec.origin = c.analytic[0].origin;
@@ -101,38 +101,39 @@ TEST_CASE("core/ocean makes a field of every kind that is read, with the same de
 }
 
 TEST_CASE("gaussians are rows of eight numbers with a covariance that is one") {
-  const auto c =
-      read(analytic("kind: gaussians, params: {list: [[1, 0, 0, 2, 0.5, 1, 0.1, 0], [0.5, 3, -1, 1, 0, 1, 0, -0.2]]}"));
+  const auto c = read_currents(
+      analytic("kind: gaussians, params: {list: [[1, 0, 0, 2, 0.5, 1, 0.1, 0], [0.5, 3, -1, 1, 0, 1, 0, -0.2]]}"));
   CHECK(c.analytic[0].gaussians ==
         std::vector<std::vector<double>>{{1, 0, 0, 2, 0.5, 1, 0.1, 0}, {0.5, 3, -1, 1, 0, 1, 0, -0.2}});
-  CHECK(errors("currents:\n  analytic:\n    kind: gaussians\n    " +
-               std::string{"origin: {lat_deg: 28, lon_deg: -16}\n    length_scale_m: 1\n    speed_scale_m_per_s: 1\n"} +
-               "    params:\n      list:\n        - [1, 0, 0, 1, 2, 1, 0, 0]\n        - [1, 2]\n") ==
+  CHECK(current_errors(
+            "currents:\n  analytic:\n    kind: gaussians\n    " +
+            std::string{"origin: {lat_deg: 28, lon_deg: -16}\n    length_scale_m: 1\n    speed_scale_m_per_s: 1\n"} +
+            "    params:\n      list:\n        - [1, 0, 0, 1, 2, 1, 0, 0]\n        - [1, 2]\n") ==
         Lines{"13:11 currents.analytic.params.list[0]: sxx, sxy, syy are no covariance; allowed: sxx > 0, syy > 0, "
               "sxx·syy > sxy²",
               "14:11 currents.analytic.params.list[1]: a list of another length; found 2; allowed: a list of 8"});
-  CHECK(errors(analytic("kind: gaussians")) ==
+  CHECK(current_errors(analytic("kind: gaussians")) ==
         Lines{"5:22 currents.analytic.params.list: missing; the kind gaussians requires it"});
 }
 
 TEST_CASE("a list under currents adds fields, which share one way of reading files") {
   const auto c =
-      read("currents:\n  - {files: [a.nc], outside_time: forbid}\n  - analytic: {" + kScales +
-           ", kind: constant, params: {u: 0, v: 0.1}}\n" + "  - analytic: {" + kScales + ", kind: stuart}\n");
+      read_currents("currents:\n  - {files: [a.nc], outside_time: forbid}\n  - analytic: {" + kScales +
+                    ", kind: constant, params: {u: 0, v: 0.1}}\n" + "  - analytic: {" + kScales + ", kind: stuart}\n");
   CHECK(c.files == std::vector<std::string>{"a.nc"});
   CHECK(c.outside_time == mission::OutsideTime::forbid);
   REQUIRE(c.analytic.size() == 2);
   CHECK(c.analytic[1].kind == "stuart");
-  CHECK(read("currents: [{files: [a.nc]}]\n").files.size() == 1);
+  CHECK(read_currents("currents: [{files: [a.nc]}]\n").files.size() == 1);
 }
 
 TEST_CASE("heights and gaps are read as the mission says, and as the files say where it does not") {
-  const auto c = read("currents: {files: [a.nc], heights: always, equator_band_deg: 2.5, fill_gaps_km: 12}\n");
+  const auto c = read_currents("currents: {files: [a.nc], heights: always, equator_band_deg: 2.5, fill_gaps_km: 12}\n");
   CHECK(c.heights == mission::Currents::Heights::always);
   CHECK(c.equator_band.si() == Approx(2.5 * kPi / 180).epsilon(1e-15));
   REQUIRE(c.fill_gaps);
   CHECK(c.fill_gaps->si() == 12'000);
-  const auto plain = read("currents: {files: [a.nc]}\n");
+  const auto plain = read_currents("currents: {files: [a.nc]}\n");
   CHECK(plain.heights == mission::Currents::Heights::when_needed);
   CHECK(plain.equator_band == mission::Currents{}.equator_band);
   CHECK_FALSE(plain.fill_gaps);
@@ -140,14 +141,14 @@ TEST_CASE("heights and gaps are read as the mission says, and as the files say w
 
 TEST_CASE(
     "a model's grid, rotation and s-levels are read, the grid beside the mission, the levels whole or not at all") {
-  const auto c = read(
+  const auto c = read_currents(
       "currents: {files: [a.nc], grid_file: /grids/g.nc, rotation: grid, s_levels: {vtransform: 2, vstretching: 4, "
       "theta_s: 5, theta_b: 0.4, hc_m: 50}}\n");
   CHECK(c.grid_file == "/grids/g.nc");
   CHECK(c.rotation == mission::Currents::Rotation::grid);
   REQUIRE(c.s_levels);
   CHECK(*c.s_levels == mission::Currents::SLevels{2, 4, 5, 0.4, Metres{50}});
-  const auto plain = read("currents: {files: [a.nc]}\n");
+  const auto plain = read_currents("currents: {files: [a.nc]}\n");
   CHECK(plain.grid_file.empty());
   CHECK(plain.rotation == mission::Currents::Rotation::recognised);
   CHECK_FALSE(plain.s_levels);
@@ -188,27 +189,27 @@ TEST_CASE("mistakes under currents are named with their place") {
         "stuart, tiled, jet, gaussians"}},
   }));
   CAPTURE(row.currents);
-  CHECK(errors(row.currents) == row.errors);
+  CHECK(current_errors(row.currents) == row.errors);
 }
 
 TEST_CASE("a parameter of another kind, a missing one and two meanings at once are mistakes") {
-  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: shear,\n    params: {rate: 1, omega: 2}}\n") ==
+  CHECK(current_errors("currents:\n  analytic: {" + kScales + ", kind: shear,\n    params: {rate: 1, omega: 2}}\n") ==
         Lines{"7:30 currents.analytic.params.omega: no parameter of the kind shear; allowed: rate"});
-  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: source,\n    params: {rate: 1}}\n") ==
+  CHECK(current_errors("currents:\n  analytic: {" + kScales + ", kind: source,\n    params: {rate: 1}}\n") ==
         Lines{"7:20 currents.analytic.params.rate: no parameter of the kind source; allowed: none"});
-  CHECK(errors("currents:\n  analytic: {" + kScales + ", kind: constant,\n    params: {u: 1, w: 1}}\n") ==
+  CHECK(current_errors("currents:\n  analytic: {" + kScales + ", kind: constant,\n    params: {u: 1, w: 1}}\n") ==
         Lines{"7:13 currents.analytic.params.v: missing; the kind constant requires it",
               "7:20 currents.analytic.params.w: unknown key; did you mean u?"});
-  CHECK(errors("currents: {files: [a.nc], analytic: {" + kScales + ", kind: stuart}}\n") ==
+  CHECK(current_errors("currents: {files: [a.nc], analytic: {" + kScales + ", kind: stuart}}\n") ==
         Lines{"5:11 currents: both files and analytic; allowed: a list of maps, one field each, to add fields"});
   CHECK(
-      errors("currents:\n  - {files: [a.nc], outside_time: hold}\n  - {outside_time: cycle,\n     analytic: {" +
-             kScales + ", kind: stuart}}\n") ==
+      current_errors("currents:\n  - {files: [a.nc], outside_time: hold}\n  - {outside_time: cycle,\n     analytic: {" +
+                     kScales + ", kind: stuart}}\n") ==
       Lines{"7:20 currents[1].outside_time: the fields of a list share one outside_time; currents[0] says otherwise"});
 }
 
 TEST_CASE("sources stand in order of trust, each with its files, its way of reading, its region and its lead times") {
-  const auto c = read(
+  const auto c = read_currents(
       "currents:\n"
       "  blend_km: 30\n"
       "  join_h: 12\n"
@@ -238,9 +239,9 @@ TEST_CASE("sources stand in order of trust, each with its files, its way of read
 
 TEST_CASE("sources that cannot be meant are reported where they stand") {
   const auto said = [](const std::string& currents, const std::string& words) {
-    for (const auto& error : errors(currents))
+    for (const auto& error : current_errors(currents))
       if (error.find(words) != std::string::npos) return true;
-    for (const auto& error : errors(currents)) UNSCOPED_INFO(error);
+    for (const auto& error : current_errors(currents)) UNSCOPED_INFO(error);
     return false;
   };
   const std::string a = "{name: a, files: [a.nc]", b = "{name: b, files: [b.nc]}";

@@ -13,10 +13,10 @@ namespace {
 const std::string kHead = "schema: glidehelm/daemon/v1\n";
 const std::string kGlider = "{name: sim01, line: {listen: \"127.0.0.1:6500\"}, to_glider: /g/sim01/to-glider}";
 
-Lines errors(const std::string& yaml) {
+Lines daemon_errors(const std::string& yaml) {
   return test::errors_of(read_daemon_file(kHead + yaml, "/etc/glidehelm/d.yaml"));
 }
-DaemonFile read(const std::string& yaml) {
+DaemonFile read_daemon(const std::string& yaml) {
   const auto file = read_daemon_file(kHead + yaml, "/etc/glidehelm/d.yaml");
   if (!file)
     for (const auto& error : file.error()) UNSCOPED_INFO(error.message());
@@ -25,13 +25,13 @@ DaemonFile read(const std::string& yaml) {
 }
 /// Errors of a file whose only glider, in line 2, has this line.
 Lines line_errors(const std::string& line) {
-  return errors("gliders: [{name: a, to_glider: /g/a, line: " + line + "}]\n");
+  return daemon_errors("gliders: [{name: a, to_glider: /g/a, line: " + line + "}]\n");
 }
 
 }  // namespace
 
 TEST_CASE("the smallest daemon file has one glider and defaults for the rest") {
-  const auto file = read("gliders:\n  - " + kGlider + "\n");
+  const auto file = read_daemon("gliders:\n  - " + kGlider + "\n");
   DaemonConfig wanted;
   wanted.missions = {"/etc/glidehelm/missions.d/*.yaml"};
   wanted.gliders = {GliderEntry{"sim01", Listen{Endpoint{"127.0.0.1", 6500}, {}}, "/g/sim01/to-glider", {}, false}};
@@ -43,7 +43,7 @@ TEST_CASE("the smallest daemon file has one glider and defaults for the rest") {
 }
 
 TEST_CASE("every key of the daemon file reaches its place") {
-  const auto config = read(
+  const auto config = read_daemon(
                           "clock: {simulated: run/clock.sock}\nstate_dir: state/\ncontrol_socket: "
                           "/tmp/c.sock\nmissions: [a.yaml, /b/*.yaml]\n"
                           "coast: c.coast\nlog: {level: warn}\n"
@@ -72,7 +72,7 @@ TEST_CASE("every key of the daemon file reaches its place") {
 }
 
 TEST_CASE("without allow only this machine is let in") {
-  const auto config = read("gliders: [" + kGlider + "]\n").config;
+  const auto config = read_daemon("gliders: [" + kGlider + "]\n").config;
   const auto& listen = std::get<Listen>(config.gliders[0].line);
   CHECK(listen.lets_in("127.0.0.1"));
   CHECK(listen.lets_in("::1"));
@@ -121,11 +121,11 @@ TEST_CASE("a line that cannot be right is named with its place") {
 
 TEST_CASE("two gliders with one name, one port or one folder are a mistake at the second") {
   CHECK(
-      errors("gliders:\n"
-             "  - {name: a, line: {listen: \"127.0.0.1:6500\"}, to_glider: /g/a}\n"
-             "  - {name: a, line: {listen: \"127.0.0.2:6500\"}, to_glider: /g//./a/}\n"
-             "  - {name: c, line: {connect: \"h:1\"}, to_glider: /g/c}\n"
-             "  - {name: d, line: {connect: \"h:1\"}, to_glider: /g/d}\n") ==
+      daemon_errors("gliders:\n"
+                    "  - {name: a, line: {listen: \"127.0.0.1:6500\"}, to_glider: /g/a}\n"
+                    "  - {name: a, line: {listen: \"127.0.0.2:6500\"}, to_glider: /g//./a/}\n"
+                    "  - {name: c, line: {connect: \"h:1\"}, to_glider: /g/c}\n"
+                    "  - {name: d, line: {connect: \"h:1\"}, to_glider: /g/d}\n") ==
       Lines{"4:12 gliders[1].name: two gliders with one name; the first stands in line 3; found a",
             "4:30 gliders[1].line.listen: two gliders with one port; the first stands in line 3; found 127.0.0.2:6500",
             "4:60 gliders[1].to_glider: two gliders with one to_glider folder; the first stands in line 3; found "
@@ -134,25 +134,26 @@ TEST_CASE("two gliders with one name, one port or one folder are a mistake at th
 }
 
 TEST_CASE("mistakes outside the gliders are named too") {
-  CHECK(errors("clock: sistem\nmissons: []\ngliders: []\n") ==
+  CHECK(daemon_errors("clock: sistem\nmissons: []\ngliders: []\n") ==
         Lines{"2:8 clock: not one of the words; found sistem; allowed: system; did you mean system?",
               "3:1 missons: unknown key; did you mean missions?",
               "4:10 gliders: a list of another length; found 0; allowed: a list of at least 1"});
-  CHECK(errors("clock: {simulatd: a}\nlog: {level: loud}\nstate_dir:\n") ==
+  CHECK(daemon_errors("clock: {simulatd: a}\nlog: {level: loud}\nstate_dir:\n") ==
         Lines{"1:1 gliders: missing; the key is required", "2:8 clock.simulated: missing; the key is required",
               "2:9 clock.simulatd: unknown key; did you mean simulated?",
               "3:14 log.level: not one of the words; found loud; allowed: debug, info, warn, error",
               "4:1 state_dir: no value; allowed: a value, or leave the key out"});
-  CHECK(errors("gliders: [{name: ../x, line: {connect: \"a:1\"}, to_glider: /g, clock_skew_ok: yes}]\n") ==
+  CHECK(daemon_errors("gliders: [{name: ../x, line: {connect: \"a:1\"}, to_glider: /g, clock_skew_ok: yes}]\n") ==
         Lines{"2:18 gliders[0].name: not of the form that is needed; found ../x; allowed: 1 to 32 of a–z, 0–9, _ and "
               "-, the first a letter or digit",
               "2:78 gliders[0].clock_skew_ok: neither true nor false; found yes; allowed: true, false"});
 }
 
 TEST_CASE("the daemon's values in force read back to the same") {
-  const auto file = read("clock: {simulated: run/clock.sock}\ngliders:\n  - " + kGlider +
-                         "\n  - {name: b, line: {listen: \"0.0.0.0:1\", allow: [192.0.2.0/24]}, to_glider: /g/b}\n" +
-                         "  - {name: c, line: {connect: \"h:1\"}, to_glider: /g/c}\n");
+  const auto file =
+      read_daemon("clock: {simulated: run/clock.sock}\ngliders:\n  - " + kGlider +
+                  "\n  - {name: b, line: {listen: \"0.0.0.0:1\", allow: [192.0.2.0/24]}, to_glider: /g/b}\n" +
+                  "  - {name: c, line: {connect: \"h:1\"}, to_glider: /g/c}\n");
   CAPTURE(file.effective);
   const auto again = read_daemon_file(file.effective, "/etc/glidehelm/d.yaml");
   REQUIRE(again);
@@ -161,7 +162,7 @@ TEST_CASE("the daemon's values in force read back to the same") {
 }
 
 TEST_CASE("texts of a dialog replace the usual ones key by key") {
-  const auto file = read(
+  const auto file = read_daemon(
       "gliders: [{name: a, to_glider: /g/a, line: {listen: \"127.0.0.1:1\"}, dialog: {reread: [\"Mafiles: again\", "
       "Re-read], "
       "transfer_failed: [\"! ERROR sending\"]}}]\n");
@@ -203,6 +204,6 @@ TEST_CASE("a text of a dialog that could not be heard is named with its place") 
       {"{rereads: [again]}", {"2:78 gliders[0].dialog.rereads: unknown key; did you mean reread?"}},
   }));
   CAPTURE(row.dialog);
-  CHECK(errors("gliders: [{name: a, to_glider: /g/a, line: {listen: \"127.0.0.1:1\"}, dialog: " +
-               std::string{row.dialog} + "}]\n") == row.errors);
+  CHECK(daemon_errors("gliders: [{name: a, to_glider: /g/a, line: {listen: \"127.0.0.1:1\"}, dialog: " +
+                      std::string{row.dialog} + "}]\n") == row.errors);
 }

@@ -22,9 +22,9 @@ const std::string kMethods =
     "direct, astar, cts-astar, abs-cts-astar, tve, astar-tve, ztve, zastar-tve, cts-astar-refined, rrt, optimization, "
     "iterative-optimization, zermelo, best";
 
-Lines errors(const std::string& yaml) { return errors_of(read_mission(yaml, "m.yaml", no_files())); }
+Lines mission_errors(const std::string& yaml) { return errors_of(read_mission(yaml, "m.yaml", no_files())); }
 /// Errors of the six lines with `more` from line 7 on.
-Lines errors_with(const std::string& more) { return errors(six_lines(more)); }
+Lines errors_with(const std::string& more) { return mission_errors(six_lines(more)); }
 Mission read(const std::string& yaml) {
   const auto m = read_mission(yaml, "m.yaml", no_files());
   if (!m)
@@ -246,7 +246,7 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
 
 TEST_CASE("mistakes in the six lines are named too") {
   const std::string tail = "currents: {files: [c.nc]}\n";
-  const auto with = [&](const std::string& head) { return errors(head + tail); };
+  const auto with = [&](const std::string& head) { return mission_errors(head + tail); };
   CHECK(with("schema: glidehelm/mission/v1\nname: a1\nglider: b1\ngoal: {lat_deg: 0, lon_deg: 0.0}\n") ==
         Lines{"4:7 goal: latitude 0, longitude 0 is no goal but a position that was never set"});
   CHECK(with("schema: glidehelm/mission/v1\nname: a1\nglider: b1\ngoal: {lat_deg: -125.9, lon_deg: 47.2}\n") ==
@@ -262,11 +262,13 @@ TEST_CASE("mistakes in the six lines are named too") {
               "3:9 glider: not of the form that is needed; found b/1; allowed: 1 to 32 of a–z, 0–9, _ and -, the first "
               "a letter or digit",
               "4:7 goal.lon_deg: missing; the key is required"});
-  CHECK(errors("name: a1\n") ==
+  CHECK(mission_errors("name: a1\n") ==
         Lines{"1:1 schema: missing; the key is required", "1:1 glider: missing; the key is required",
               "1:1 goal: missing; the key is required", "1:1 currents: missing; the key is required"});
-  CHECK(errors("") == Lines{"1:1 not a map of keys; found nothing; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"});
-  CHECK(errors("- a\n") == Lines{"1:1 not a map of keys; found a list; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"});
+  CHECK(mission_errors("") ==
+        Lines{"1:1 not a map of keys; found nothing; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"});
+  CHECK(mission_errors("- a\n") ==
+        Lines{"1:1 not a map of keys; found a list; allowed: KEY: VALUE lines, or {KEY: VALUE, …}"});
 }
 
 TEST_CASE("all mistakes of a file are told at once") {
@@ -322,7 +324,7 @@ TEST_CASE("the values in force are printed with their origin and read back to th
 }
 
 TEST_CASE("a hostile file gives errors, not a crash") {
-  CHECK_FALSE(errors(std::string(200'000, '[')).empty());
+  CHECK_FALSE(mission_errors(std::string(200'000, '[')).empty());
   CHECK_FALSE(errors_with("list: {slot: " + std::string(100'000, '9') + "}\n").empty());
   CHECK_FALSE(errors_with(std::string(500'000, 'k') + ": 1\n").empty());
   std::string many;

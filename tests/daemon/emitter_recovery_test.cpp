@@ -229,7 +229,7 @@ TEST_CASE("any operation that fails, once or for ever: the same promises") {
       for (const int code : {EIO, ENOSPC, EROFS, EDQUOT, EMFILE})
         for (const auto what : {Fault::What::error, Fault::What::short_write})
           for (const bool for_ever : {false, true})
-            for (const std::uint64_t power : {1, 2})
+            for (const std::uint64_t power : {1U, 2U})
               tally.add({before, Who::nobody, 0, {what, at, code, for_ever}, power, {}, 1});
   }
   tally.print("emission, failing operations");
@@ -244,7 +244,7 @@ TEST_CASE("a human's file that appears at any instant stays, whatever fails besi
     for (auto when = first + 1; when <= last; ++when) {
       for (std::uint64_t power = 0; power < 16; ++power) tally.add({before, Who::human, when, {}, power, {}, 1});
       for (auto at = when; at <= last + 4; ++at) {
-        for (const std::uint64_t power : {0, 1, 2, 3})
+        for (const std::uint64_t power : {0U, 1U, 2U, 3U})
           tally.add({before, Who::human, when, {Fault::What::power_cut, at, 0, false}, power, {}, 1});
         // Soon after the exchange, many ways in which the power may go: between the two exchanges is where it hurts.
         const std::uint64_t powers = before == Before::ours && at <= when + 6 ? 16 : 3;
@@ -266,7 +266,7 @@ TEST_CASE("a dockserver that takes the file at any instant is never given it twi
     for (auto when = first + 1; when <= last; ++when) {
       tally.add({before, Who::dockserver, when, {}, 1, {}, 1});
       for (auto at = when; at <= last + 4; ++at)
-        for (const std::uint64_t power : {0, 1, 2, 3})
+        for (const std::uint64_t power : {0U, 1U, 2U, 3U})
           tally.add({before, Who::dockserver, when, {Fault::What::power_cut, at, 0, false}, power, {}, 1});
     }
   }
@@ -280,7 +280,7 @@ TEST_CASE("recovery that is itself killed at any operation ends where it would h
   for (const auto before : {Before::nothing, Before::ours}) {
     const auto first = operations_of_start(before), last = operations_of(before);
     for (auto at = first + 1; at <= last; ++at)
-      for (const std::uint64_t power : {1, 3}) {
+      for (const std::uint64_t power : {1U, 3U}) {
         Observer trial{{before,
                         Who::nobody,
                         0,

@@ -11,7 +11,7 @@ using simulator::Variant;
 
 namespace {
 
-CoastalSpec sea() {
+CoastalSpec small_sea() {
   CoastalSpec s;
   s.west_deg = 3;
   s.east_deg = 4;
@@ -23,7 +23,7 @@ CoastalSpec sea() {
   return s;
 }
 
-int count_of(const std::string& text, const std::string& what) {
+int times_said(const std::string& text, const std::string& what) {
   int n = 0;
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++n;
   return n;
@@ -32,7 +32,7 @@ int count_of(const std::string& text, const std::string& what) {
 }  // namespace
 
 TEST_CASE("the CDL has the axes, names and units of CF, and one value per node and time") {
-  const auto cdl = coastal_cdl(sea(), Variant::forecast, CdlGrid{0.25, 4, 2}, chart::Chart{});
+  const auto cdl = coastal_cdl(small_sea(), Variant::forecast, CdlGrid{0.25, 4, 2}, chart::Chart{});
   CHECK(cdl.rfind("netcdf coastal {", 0) == 0);
   CHECK(cdl.find("time = 3 ;\n\tlat = 3 ;\n\tlon = 5 ;") != std::string::npos);
   CHECK(cdl.find("time:units = \"hours since 2023-11-14T22:13:20Z\"") != std::string::npos);
@@ -42,12 +42,12 @@ TEST_CASE("the CDL has the axes, names and units of CF, and one value per node a
   CHECK(cdl.find(" lon = 3.000000, 3.250000, 3.500000, 3.750000, 4.000000 ;") != std::string::npos);
   const auto values =
       cdl.substr(cdl.find(" water_u = ") + 11, cdl.find(" ;", cdl.find(" water_u = ")) - cdl.find(" water_u = ") - 11);
-  CHECK(count_of(values, ",") == 3 * 3 * 5 - 1);
+  CHECK(times_said(values, ",") == 3 * 3 * 5 - 1);
   CHECK(values.find('_') == std::string::npos);
 }
 
 TEST_CASE("a value of the CDL is the field at its node, to its last digit") {
-  const auto spec = sea();
+  const auto spec = small_sea();
   const auto cdl = coastal_cdl(spec, Variant::truth, CdlGrid{0.25, 4, 2}, chart::Chart{});
   const simulator::CoastalField field{spec, Variant::truth};
   const auto at = cdl.find(" water_v = ");
@@ -57,6 +57,6 @@ TEST_CASE("a value of the CDL is the field at its node, to its last digit") {
 }
 
 TEST_CASE("the same arguments give the same CDL") {
-  CHECK(coastal_cdl(sea(), Variant::truth, CdlGrid{0.1, 6, 1}, chart::Chart{}) ==
-        coastal_cdl(sea(), Variant::truth, CdlGrid{0.1, 6, 1}, chart::Chart{}));
+  CHECK(coastal_cdl(small_sea(), Variant::truth, CdlGrid{0.1, 6, 1}, chart::Chart{}) ==
+        coastal_cdl(small_sea(), Variant::truth, CdlGrid{0.1, 6, 1}, chart::Chart{}));
 }

@@ -47,7 +47,7 @@ TEST_CASE("the flow is the curl of the stream function, and free of divergence")
 }
 
 TEST_CASE("the straight way lies in an opposing jet with a favourable one beside it") {
-  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     auto spec = sea(seed);
     spec.eddies = 0;
     spec.tide = 0;

@@ -11,8 +11,6 @@ using namespace glidehelm::simulator;
 
 namespace {
 
-const chart::Chart kOpen;
-
 GliderPlan plan() {
   GliderPlan p;
   p.setup.start = geo_point(40, 5);

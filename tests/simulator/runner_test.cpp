@@ -14,7 +14,6 @@ using namespace glidehelm::simulator;
 
 namespace {
 
-const chart::Chart kOpen;
 const Instant kStart = instant_at(1.7e9);
 
 GliderPlan short_way() {

@@ -2,8 +2,10 @@
 #include <string>
 
 #include "simulator/scenario.hpp"
+#include "tests/simulator/scenario_errors.hpp"
 
 using namespace glidehelm;
+using test::errors_of;
 using namespace glidehelm::simulator;
 
 namespace {
@@ -21,14 +23,6 @@ GliderSetup setup_of(const std::string& text) {
     for (const auto& e : s.error()) UNSCOPED_INFO(e.message());
   REQUIRE(s);
   return s->gliders.at(0).plan.setup;
-}
-
-std::string errors_of(const std::string& text) {
-  const auto s = read_scenario(text, "/x/s.yaml");
-  if (s) return "read";
-  std::string all;
-  for (const auto& e : s.error()) all += e.message() + "\n";
-  return all;
 }
 
 bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

@@ -1,4 +1,5 @@
 #include "simulator/scenario.hpp"
+#include "tests/simulator/scenario_errors.hpp"
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -9,6 +10,7 @@
 
 using namespace glidehelm;
 using simulator::read_scenario;
+using test::errors_of;
 
 namespace {
 
@@ -28,14 +30,6 @@ std::string with(const std::string& line, const std::string& other) {
   const auto at = text.find(line);
   REQUIRE(at != std::string::npos);
   return text.replace(at, line.size(), other);
-}
-
-std::string errors_of(const std::string& text) {
-  const auto s = read_scenario(text, "/x/s.yaml");
-  if (s) return "read";
-  std::string all;
-  for (const auto& e : s.error()) all += e.message() + "\n";
-  return all;
 }
 
 std::string slurp(const std::filesystem::path& path) {

@@ -15,8 +15,6 @@ using simulator::Simulation;
 
 namespace {
 
-const chart::Chart kOpen;
-
 GliderPlan plan_to(double goal_km, const std::string& name = "sim01") {
   GliderPlan p;
   p.setup.name = name;

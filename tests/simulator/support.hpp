@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/chart/chart.hpp"
 #include "core/ocean/field.hpp"
 
 namespace glidehelm::test {
@@ -17,6 +18,9 @@ struct FormulaField {
   ocean::Coverage coverage() const { return limits; }
   MetresPerSecond fastest() const { return limit_speed; }
 };
+
+inline const chart::Chart kOpen;  ///< no land, no keep-out areas
+inline const GeoPoint kHome = geo_point(40.0, 5.0);
 
 inline Current water(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
 inline const FormulaField kStill{[](double, double, double, double) { return water(0, 0); }};

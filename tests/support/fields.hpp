@@ -11,6 +11,8 @@
 /// Small fields for tests of any room.
 namespace glidehelm::test {
 
+inline Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
+
 /// The same current everywhere and always; still water by default.
 struct Uniform {
   double east{}, north{};

@@ -4,10 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "core/base/utc.hpp"
 #include "daemon/cli/rehearsal_flight.hpp"
 #include "tests/support/fields.hpp"
 
 namespace glidehelm::test {
+
+inline const Instant kSeaStart = *utc_from_text("2026-03-01T00:00:00Z");  ///< when flown missions begin
 
 using FlownMission = cli::RehearsalFlight;
 

@@ -16,6 +16,15 @@
 namespace glidehelm::test {
 
 inline constexpr double kT0 = 1.7e9;  ///< epoch second of every fix here
+/// The schedule and the speed of `problem_between`.
+inline constexpr double kStint = 8 * 3600.0, kSpeed = 0.3;
+
+inline const double kEquator = LocalMetric::at(0).parallel_radius;  ///< metres
+/// East and north metres about (0, 0) as a position. The metric changes by 2e-5 within 40 km of the equator.
+inline GeoPoint on_equator(double x, double y) {
+  const auto m = LocalMetric::at(0);
+  return GeoPoint::from_kernel(y / m.meridian_radius, x / m.parallel_radius);
+}
 
 /// Point to point with stints of eight hours, U = Û = 0.3 m/s, on open water.
 inline planning::Problem problem_between(GeoPoint from, GeoPoint to, double radius_m = 500) {
@@ -23,10 +32,17 @@ inline planning::Problem problem_between(GeoPoint from, GeoPoint to, double radi
   p.start = {from, kT0};
   p.goal = planning::PointGoal{to, Metres{radius_m}};
   p.glider.name = "test";
-  p.schedule.stint = p.schedule.first_stint = Seconds{8 * 3600.0};
+  p.schedule.stint = p.schedule.first_stint = Seconds{kStint};
   p.coast_margin = Metres{0};
   p.headings = 24;
   p.horizon_s = kT0 + 3 * planning::still_water_time(p).count();
+  return p;
+}
+
+/// On the equator, with surface intervals of no length: the mean motion is that of the dive.
+inline planning::Problem always_under() {
+  auto p = problem_between(geo_point(0, 0), geo_point(0, 1));
+  p.schedule.surface = Seconds{0};
   return p;
 }
 

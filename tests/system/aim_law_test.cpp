@@ -19,7 +19,6 @@ using test::FlownMission;
 
 namespace {
 
-const Instant kStart = *utc_from_text("2026-03-01T00:00:00Z");
 constexpr double kSpeed = 0.30, kStint = 4 * 3600.0, kLength = kSpeed * kStint;
 
 /// The parts, in the order in which the plan's inputs are exchanged for the glider's own.
@@ -190,9 +189,9 @@ TEST_CASE("where truth is the forecast 200 stints in currents up to 3 U end with
       const auto from = geo_point(40.75, 4.45), goal = destination(from, Bearing{Radians{way}}, Metres{70'000});
       const auto forecast =
           test::gridded_forecast(test::random_sea(dice, from, 0.10, c * std::sin(towards), c * std::cos(towards)),
-                                 geo_point(40, 3.4), geo_point(41.5, 5.5), kStart);
+                                 geo_point(40, 3.4), geo_point(41.5, 5.5), test::kSeaStart);
       const chart::Chart open_ocean;
-      auto s = test::leg_setup(from, goal, correction, kStart);
+      auto s = test::leg_setup(from, goal, correction, test::kSeaStart);
       s.mission.horizon = Seconds{36 * 3600.0};
       s.glider.setup.stint_s = kStint;
       s.glider.setup.prior_water =

@@ -210,7 +210,7 @@ struct Voyage {
 };
 
 /// What the journal says, per glider.
-struct Said {
+struct SaidOfFleet {
   struct Accepted {
     double heard_s{}, taken_s{};
     GeoPoint fix;
@@ -226,8 +226,8 @@ struct Said {
   int replacements{};
 };
 
-std::map<std::string, Said> read_journal(const std::vector<daemon::JournalRecord>& records) {
-  std::map<std::string, Said> said;
+std::map<std::string, SaidOfFleet> read_journal(const std::vector<daemon::JournalRecord>& records) {
+  std::map<std::string, SaidOfFleet> said;
   std::map<std::uint64_t, Json> intents;
   std::map<std::string, model::Surfacing> heard;  // the last one of each glider: what the next decision is about
   for (const auto& record : records) {
@@ -293,12 +293,12 @@ struct Count {
   [[nodiscard]] int wrong() const { return twice + of_nobody + archived_uncommitted; }
 };
 
-Count count(const Voyage& voyage, const std::map<std::string, Said>& said) {
+Count count(const Voyage& voyage, const std::map<std::string, SaidOfFleet>& said) {
   Count c;
   for (const auto& glider : voyage.results["gliders"]) {
     const std::string name = glider["name"];
     const auto found = said.find(name);
-    const Said of = found == said.end() ? Said{} : found->second;
+    const SaidOfFleet of = found == said.end() ? SaidOfFleet{} : found->second;
     const auto& track = glider["track"];
     if (glider["end"] == "behaviour_error") ++c.ended_badly;
     c.lists_taken += glider["lists_taken"].get<int>();
@@ -311,7 +311,7 @@ Count count(const Voyage& voyage, const std::map<std::string, Said>& said) {
       fixes.push_back(fix_s);
       const auto in_window = [&](double t) { return t >= fix_s && t <= dived_s; };
       const bool refused = std::any_of(of.refused.begin(), of.refused.end(), in_window);
-      const Said::Accepted* accepted = nullptr;
+      const SaidOfFleet::Accepted* accepted = nullptr;
       for (const auto& a : of.accepted)
         if (in_window(a.heard_s) && accepted == nullptr) accepted = &a;
       if (accepted != nullptr) {
@@ -397,9 +397,8 @@ std::string report(const Count& c) {
 }
 
 /// Whose plans the committed files are: of the first `best` gliders, and of the others.
-std::pair<std::map<std::string, int>, std::map<std::string, int>> methods_flown(const Voyage& voyage,
-                                                                                const std::map<std::string, Said>& said,
-                                                                                int best) {
+std::pair<std::map<std::string, int>, std::map<std::string, int>> methods_flown(
+    const Voyage& voyage, const std::map<std::string, SaidOfFleet>& said, int best) {
   std::pair<std::map<std::string, int>, std::map<std::string, int>> flown;
   int number = 0;
   for (const auto& g : voyage.scenario.gliders) {

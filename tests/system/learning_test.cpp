@@ -14,10 +14,8 @@ using test::FlownMission;
 
 namespace {
 
-const Instant kStart = *utc_from_text("2026-03-01T00:00:00Z");
-
 FlownMission::Setup setup(GeoPoint from, GeoPoint goal, int correction) {
-  return test::leg_setup(from, goal, correction, kStart);
+  return test::leg_setup(from, goal, correction, test::kSeaStart);
 }
 
 struct DacError {
@@ -85,8 +83,8 @@ TEST_CASE(
       {"none of them", {silent, {}, false, false}, false, {}, From::assumed_zero},
       {"untreated (configured as 0)", {}, false, Radians{0}, From::configured}};
   const auto from = geo_point(40.4, 4.1), goal = geo_point(41.3, 5.2);
-  const auto forecast =
-      test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from, goal, kStart);
+  const auto forecast = test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from,
+                                               goal, test::kSeaStart);
   const chart::Chart open_ocean;
   std::cout << "frame turned by    learned from                                worst direction   worst size\n";
   for (const double rotation : {10.0, -10.0})
@@ -141,8 +139,8 @@ TEST_CASE("a current of which only the initial or only the final value is told i
        false,
        false}};
   const auto from = geo_point(40.4, 4.1), goal = geo_point(41.3, 5.2);
-  const auto forecast =
-      test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from, goal, kStart);
+  const auto forecast = test::gridded_forecast(test::random_sea({17}, geo_point(40.8, 4.6), 0.05, 0.16, -0.11), from,
+                                               goal, test::kSeaStart);
   const chart::Chart open_ocean;
   for (const auto& way : ways) {
     auto s = setup(from, goal, 1);
@@ -174,8 +172,8 @@ TEST_CASE(
     "a glider that is slower than configured and steers 6 degrees off is foreseen better from surfacing to surfacing") {
   // Correction 1: what it believes of the current holds its own errors, so the first plans are wrong by a tenth of the way.
   const auto from = geo_point(40.3, 4.0), goal = geo_point(41.5, 5.6);
-  const auto forecast =
-      test::gridded_forecast(test::random_sea({5}, geo_point(40.8, 4.6), 0.08, 0.03, 0.05), from, goal, kStart);
+  const auto forecast = test::gridded_forecast(test::random_sea({5}, geo_point(40.8, 4.6), 0.08, 0.03, 0.05), from,
+                                               goal, test::kSeaStart);
   const chart::Chart open_ocean;
   auto s = setup(from, goal, 1);
   s.mission.frame_rotation = Radians{0};

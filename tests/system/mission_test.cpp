@@ -12,8 +12,6 @@ using test::FlownMission;
 
 namespace {
 
-const Instant kStart = *utc_from_text("2026-03-01T00:00:00Z");
-
 /// Seas of the lost-call study: a few in the quick tests, 50 with GLIDEHELM_SEAS=50 (scripts/campaign seas).
 std::uint64_t seas_wanted() {
   const char* wanted = std::getenv("GLIDEHELM_SEAS");
@@ -25,8 +23,8 @@ std::vector<ocean::AnalyticSpec> eddies(std::uint64_t seed, GeoPoint origin, dou
   return test::random_sea({seed * 7919 + 12345}, origin, speed, mean_east, mean_north);
 }
 
-FlownMission::Setup setup(GeoPoint from, GeoPoint goal, int correction) {
-  auto s = test::leg_setup(from, goal, correction, kStart);
+FlownMission::Setup coarse_setup(GeoPoint from, GeoPoint goal, int correction) {
+  auto s = test::leg_setup(from, goal, correction, test::kSeaStart);
   s.mission.method = FlownMission::Setup{}.mission.method;
   s.mission.frame_rotation = Radians{0};
   s.mission.cell = Metres{4000};
@@ -38,9 +36,10 @@ FlownMission::Setup setup(GeoPoint from, GeoPoint goal, int correction) {
 
 TEST_CASE("a whole mission arrives, and its journalled events give the same effects byte for byte") {
   const auto from = geo_point(40.5, 4.2), goal = geo_point(41.0, 4.6);
-  const auto forecast = test::gridded_forecast(eddies(3, geo_point(40.75, 4.4), 0.15, 0.02, -0.03), from, goal, kStart);
+  const auto forecast =
+      test::gridded_forecast(eddies(3, geo_point(40.75, 4.4), 0.15, 0.02, -0.03), from, goal, test::kSeaStart);
   const chart::Chart open_ocean;
-  auto s = setup(from, goal, 1);
+  auto s = coarse_setup(from, goal, 1);
   s.end.days = 12;
   FlownMission flown{s, forecast, forecast->forecast.ocean(), open_ocean};
   flown.fly();
@@ -82,9 +81,9 @@ TEST_CASE("where the ocean is the forecast every surfacing is within 200 m of th
                         Case{0, -0.10, -0.36, "correction 0, current > U against the way"}}) {
     const auto from = geo_point(40.2, 4.0), goal = geo_point(41.6, 5.6);
     const auto forecast =
-        test::gridded_forecast(eddies(11, geo_point(40.9, 4.8), 0.10, c.east, c.north), from, goal, kStart);
+        test::gridded_forecast(eddies(11, geo_point(40.9, 4.8), 0.10, c.east, c.north), from, goal, test::kSeaStart);
     const chart::Chart open_ocean;
-    auto s = setup(from, goal, c.correction);
+    auto s = coarse_setup(from, goal, c.correction);
     s.end.surfacings = 21;
     // Against a current faster than the glider the goal is out of reach: two days are planned, and the glider stays in the field.
     if (c.north < -0.3) s.mission.horizon = Seconds{48 * 3600.0};
@@ -115,9 +114,9 @@ TEST_CASE("without a file for five surfacings at most 1 % of the dives head more
       const auto from = geo_point(40.4, 4.1), goal = geo_point(41.1, 4.8);
       const auto forecast = test::gridded_forecast(
           eddies(seed, geo_point(40.75, 4.45), 0.15, dice.between(-0.05, 0.05), dice.between(-0.05, 0.05)), from, goal,
-          kStart);
+          test::kSeaStart);
       const chart::Chart open_ocean;
-      auto s = setup(from, goal, correction);
+      auto s = coarse_setup(from, goal, correction);
       s.mission.method = "cts-astar";
       s.glider.setup.hull.speed = MetresPerSecond{0.30 * dice.between(0.90, 1.05)};
       s.glider.setup.stint_s = 4 * 3600.0 * dice.between(0.95, 1.05);

@@ -18,7 +18,7 @@ std::pair<double, double> plane(double lat, double lon) {
   return {0.01 * lat - 0.02 * lon + 0.001 * lat * lon, 0.3 + 0.05 * lat};
 }
 
-double east_of(const Expected<Sample, NoCurrent>& s) {
+double eastward(const Expected<Sample, NoCurrent>& s) {
   REQUIRE(s);
   return s->current.east.si();
 }
@@ -74,8 +74,8 @@ TEST_CASE("a field across the antimeridian answers on both sides of it") {
   const auto field = test::make_field(test::steps(0, 1, 3), test::steps(178, 1, 5), [](double, double lon) {
     return std::pair{lon - 180, 0.0};
   });
-  CHECK(east_of(field.sample(geo_point(1, 179.5), Depth{}, 0)) == Approx(-0.5).margin(kFloat));
-  CHECK(east_of(field.sample(geo_point(1, -179.5), Depth{}, 0)) == Approx(0.5).margin(kFloat));
+  CHECK(eastward(field.sample(geo_point(1, 179.5), Depth{}, 0)) == Approx(-0.5).margin(kFloat));
+  CHECK(eastward(field.sample(geo_point(1, -179.5), Depth{}, 0)) == Approx(0.5).margin(kFloat));
   CHECK(reason_of(field.sample(geo_point(1, -177), Depth{}, 0)) == NoCurrent::outside_area);
 }
 
@@ -87,7 +87,7 @@ TEST_CASE("a field around the globe has no edge in longitude") {
     for (double lon = -180; lon < 180; lon += 0.377) {
       const auto s = field.sample(geo_point(0.3, lon), Depth{}, 0);
       // Linear interpolation of a cosine over h = 0.25°: h²/8 = 2.4e-6.
-      CHECK(east_of(s) == Approx(std::cos(lon * kPi / 180)).margin(2.4e-6 + kFloat));
+      CHECK(eastward(s) == Approx(std::cos(lon * kPi / 180)).margin(2.4e-6 + kFloat));
     }
     CHECK(field.coverage().east - field.coverage().west == Approx(2 * kPi));
   }
@@ -98,15 +98,15 @@ TEST_CASE("wet corners with at least half the weight give their renormalised mea
   // At (1.25, 1.25) the dry corner has weight 0.75² = 0.5625: less than half is wet.
   CHECK(reason_of(field.sample(geo_point(1.25, 1.25), Depth{}, 0)) == NoCurrent::no_data);
   // At (1.5, 1.25) the corners weigh 0.375 (dry), 0.125 (12), 0.375 (21), 0.125 (22).
-  CHECK(east_of(field.sample(geo_point(1.5, 1.25), Depth{}, 0)) ==
+  CHECK(eastward(field.sample(geo_point(1.5, 1.25), Depth{}, 0)) ==
         Approx((0.125 * 12 + 0.375 * 21 + 0.125 * 22) / 0.625).epsilon(1e-6));
   // Exactly half: (1, 1.5) lies between the dry node and node 12.
-  CHECK(east_of(field.sample(geo_point(1, 1.5), Depth{}, 0)) == Approx(12).epsilon(1e-6));
+  CHECK(eastward(field.sample(geo_point(1, 1.5), Depth{}, 0)) == Approx(12).epsilon(1e-6));
 }
 
 TEST_CASE("a dry corner of weight zero changes nothing") {
   const auto field = chequered({{1, 1}, {2, 1}});
-  CHECK(east_of(field.sample(geo_point(1.5, 2), Depth{}, 0)) == Approx(17).epsilon(1e-6));
+  CHECK(eastward(field.sample(geo_point(1.5, 2), Depth{}, 0)) == Approx(17).epsilon(1e-6));
   CHECK_FALSE(field.sample(geo_point(1.5, 2), Depth{}, 0)->extrapolated);
 }
 
@@ -121,10 +121,10 @@ TEST_CASE("beside the last wet node its value is borrowed up to one and a half c
   CHECK(borrowed->current.east.si() == 23);  // node (2, 3), 1.4 cells away
   CHECK(reason_of(field.sample(geo_point(2, 1.4), Depth{}, 0)) == NoCurrent::no_data);
   // At equal distance the southern node wins: (2.5, 2) is as far from (2, 3) as from (3, 3).
-  CHECK(east_of(field.sample(geo_point(2.5, 2), Depth{}, 0)) == 23);
+  CHECK(eastward(field.sample(geo_point(2.5, 2), Depth{}, 0)) == 23);
 
   const auto wider = chequered(dry, {OutsideTime::hold, Interpolation::linear, 3.0, false});
-  CHECK(east_of(wider.sample(geo_point(2, 0.2), Depth{}, 0)) == 23);
+  CHECK(eastward(wider.sample(geo_point(2, 0.2), Depth{}, 0)) == 23);
 }
 
 TEST_CASE("without a coastline the mask is land and nothing is borrowed") {
@@ -157,19 +157,19 @@ TEST_CASE("in time the current is linear, and outside it the policy decides") {
   const auto at = [&](OutsideTime policy, double t, Interpolation how = Interpolation::linear) {
     return GriddedField{grid, {policy, how, 1.5, false}}.sample(geo_point(0.5, 0.5), Depth{}, t);
   };
-  CHECK(east_of(at(OutsideTime::forbid, 1250)) == Approx(1.25).margin(kFloat));
+  CHECK(eastward(at(OutsideTime::forbid, 1250)) == Approx(1.25).margin(kFloat));
   CHECK(reason_of(at(OutsideTime::forbid, 2001)) == NoCurrent::outside_time);
-  CHECK(east_of(at(OutsideTime::hold, 5000)) == 2);
-  CHECK(east_of(at(OutsideTime::hold, 0)) == 1);
-  CHECK(east_of(at(OutsideTime::hold, 1499, Interpolation::nearest)) == 1);
-  CHECK(east_of(at(OutsideTime::hold, 1501, Interpolation::nearest)) == 2);
+  CHECK(eastward(at(OutsideTime::hold, 5000)) == 2);
+  CHECK(eastward(at(OutsideTime::hold, 0)) == 1);
+  CHECK(eastward(at(OutsideTime::hold, 1499, Interpolation::nearest)) == 1);
+  CHECK(eastward(at(OutsideTime::hold, 1501, Interpolation::nearest)) == 2);
   CHECK_FALSE((GriddedField{grid, {OutsideTime::forbid, Interpolation::linear, 1.5, false}}.coverage().holds_outside));
 }
 
 TEST_CASE("nearest takes the value of the nearest node") {
   const auto field = chequered({}, {OutsideTime::hold, Interpolation::nearest, 0, false});
-  CHECK(east_of(field.sample(geo_point(1.4, 2.6), Depth{}, 0)) == 13);
-  CHECK(east_of(field.sample(geo_point(1.6, 2.4), Depth{}, 0)) == 22);
+  CHECK(eastward(field.sample(geo_point(1.4, 2.6), Depth{}, 0)) == 13);
+  CHECK(eastward(field.sample(geo_point(1.6, 2.4), Depth{}, 0)) == 22);
 }
 
 TEST_CASE("cubic and Akima in time follow a parabola and a line, and bound what they may overshoot") {
@@ -180,7 +180,7 @@ TEST_CASE("cubic and Akima in time follow a parabola and a line, and bound what 
   const GriddedField cubic{grid, {OutsideTime::hold, Interpolation::cubic, 1.5, false}};
   const GriddedField akima{grid, {OutsideTime::hold, Interpolation::akima, 1.5, false}};
   for (const double t : {2.5, 3.3, 4.75}) {
-    CHECK(east_of(cubic.sample(geo_point(0.5, 0.5), Depth{}, t)) == Approx(t * t / 64).margin(kFloat));
+    CHECK(eastward(cubic.sample(geo_point(0.5, 0.5), Depth{}, t)) == Approx(t * t / 64).margin(kFloat));
     CHECK(akima.sample(geo_point(0.5, 0.5), Depth{}, t)->current.north.si() == Approx(t / 8).margin(kFloat));
   }
   CHECK(cubic.fastest().si() >= std::hypot(49.0 / 64, 7.0 / 8) * overshoot_bound(Interpolation::cubic, 1));
@@ -214,10 +214,10 @@ GriddedField slope(const GriddedOptions& options = {}) {
 
 TEST_CASE("in depth the current is linear between levels and the first level's above it") {
   const auto field = slope();
-  CHECK(east_of(field.sample(geo_point(1, 0.5), at_depth(0), 0)) == Approx(5).margin(kFloat * 10));
-  CHECK(east_of(field.sample(geo_point(1, 0.5), at_depth(5), 0)) == Approx(5).margin(kFloat * 10));
-  CHECK(east_of(field.sample(geo_point(1, 0.5), at_depth(11), 0)) == Approx(11).margin(kFloat * 10));
-  CHECK(east_of(field.sample(geo_point(1, 0.5), at_depth(30), 0)) == Approx(30).margin(kFloat * 30));
+  CHECK(eastward(field.sample(geo_point(1, 0.5), at_depth(0), 0)) == Approx(5).margin(kFloat * 10));
+  CHECK(eastward(field.sample(geo_point(1, 0.5), at_depth(5), 0)) == Approx(5).margin(kFloat * 10));
+  CHECK(eastward(field.sample(geo_point(1, 0.5), at_depth(11), 0)) == Approx(11).margin(kFloat * 10));
+  CHECK(eastward(field.sample(geo_point(1, 0.5), at_depth(30), 0)) == Approx(30).margin(kFloat * 30));
 }
 
 TEST_CASE("below the deepest wet level it is below the bottom, over land it is not") {
@@ -242,7 +242,7 @@ TEST_CASE("beside the coast the column of the nearest wet node is borrowed, down
 TEST_CASE("the shallowest level is a two-dimensional field over the same numbers") {
   const auto top = slope().shallowest();
   CHECK(top.levels() == 1);
-  CHECK(east_of(top.sample(geo_point(1, 0.5), at_depth(500), 0)) == Approx(5).margin(kFloat * 10));
+  CHECK(eastward(top.sample(geo_point(1, 0.5), at_depth(500), 0)) == Approx(5).margin(kFloat * 10));
   CHECK(top.fastest().si() == Approx(std::hypot(5, 3)).epsilon(3e-6));  // the fastest of that level alone
 }
 
@@ -263,7 +263,7 @@ TEST_CASE("a copy keeps the numbers alive") {
     const auto field = chequered({});
     copy = field;
   }
-  CHECK(east_of(copy->sample(geo_point(2, 2), Depth{}, 0)) == 22);
+  CHECK(eastward(copy->sample(geo_point(2, 2), Depth{}, 0)) == 22);
 }
 
 TEST_CASE("a sample over a filled node is marked extrapolated, at the times and levels that have it") {

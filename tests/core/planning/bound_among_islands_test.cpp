@@ -12,7 +12,7 @@ using planning::Bound;
 
 namespace {
 
-constexpr double kU = 0.3, kRadius = 100;
+constexpr double kDisc = 100;
 
 struct Point {
   double x, y;  ///< metres about (0, 0) as a position
@@ -54,7 +54,7 @@ double straight_time(Point a, Point b, test::Uniform c, double radius) {
   double low = 0, high = 1e8;
   for (int i = 0; i < 200; ++i) {
     const double t = 0.5 * (low + high);
-    (std::hypot(dx - c.east * t, dy - c.north * t) > kU * t + radius ? low : high) = t;
+    (std::hypot(dx - c.east * t, dy - c.north * t) > test::kSpeed * t + radius ? low : high) = t;
   }
   return high;
 }
@@ -75,7 +75,7 @@ double least_time(Point from, Point to, const std::vector<Polygon>& islands, tes
   std::vector<std::vector<double>> cost(n, std::vector<double>(n, 1e18));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      if (i != j && sees(i, j)) cost[i][j] = straight_time(nodes[i], nodes[j], c, j + 1 == n ? kRadius : 0.0);
+      if (i != j && sees(i, j)) cost[i][j] = straight_time(nodes[i], nodes[j], c, j + 1 == n ? kDisc : 0.0);
   for (std::size_t round = 0; round < n; ++round)
     for (std::size_t i = 0; i < n; ++i)
       for (std::size_t j = 0; j < n; ++j) time[j] = std::min(time[j], time[i] + cost[i][j]);
@@ -113,7 +113,7 @@ Polygon rectangle(double west, double south, double east, double north) {
 }
 
 planning::Problem submerged(Point from, Point to) {
-  auto p = test::problem_between(place(from), place(to), kRadius);
+  auto p = test::problem_between(place(from), place(to), kDisc);
   p.schedule.surface = p.schedule.time_to_dive = Seconds{0};
   p.coast_margin = Metres{0};
   return p;
@@ -137,7 +137,7 @@ void check(Point from, Point to, const std::vector<Polygon>& islands, test::Unif
 }  // namespace
 
 TEST_CASE("the bound among islands is the exact way round their corners") {
-  for (const std::uint64_t seed : {1, 2, 4, 5, 7, 8}) {
+  for (const std::uint64_t seed : {1U, 2U, 4U, 5U, 7U, 8U}) {
     test::Dice dice{seed};
     for (int k = 0; k < 16; ++k) dice.roll();
     const auto islands = random_islands(dice, 8);

@@ -9,8 +9,6 @@ using namespace glidehelm;
 
 namespace {
 
-constexpr double kStint = 8 * 3600.0, kSpeed = 0.3;
-
 std::vector<double> headings_about(test::Dice& dice, std::size_t n, double middle) {
   std::vector<double> headings;
   for (std::size_t i = 0; i < n; ++i) headings.push_back(middle + dice.between(-0.5, 0.5));
@@ -32,7 +30,7 @@ TEST_CASE("in still water the end answers to each heading as the end of a chain 
   // At the equator east is the second axis turned by the longitude, north the third. A turn moves the end by the way of a stint at a
   // right angle to the heading. The metric over 30 km differs from that at the start by (30/6378)² = 2e-5, the difference of a
   // sine over the turn of 250 m by (250/8640)²/6 = 1.4e-4.
-  const double way = kSpeed * kStint;
+  const double way = test::kSpeed * test::kStint;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double h = headings[static_cast<std::size_t>(k)];
     const double lon = from.lon.radians();
@@ -59,7 +57,7 @@ TEST_CASE("slopes of distance and toll are those of whole flights turned a littl
   int paid = 0;
   for (int round = 0; round < 12; ++round) {
     const auto headings = headings_about(dice, 5, 70 * kPi / 180);
-    const double until = p.start.fix_s + p.schedule.dive_time(4).count() + dice.between(0.3, 1.0) * kStint;
+    const double until = p.start.fix_s + p.schedule.dive_time(4).count() + dice.between(0.3, 1.0) * test::kStint;
     const auto slopes = endings.end_with_slopes(headings, until);
     paid += slopes.toll > 0 ? 1 : 0;
     for (std::size_t k = 0; k < headings.size(); ++k) {
@@ -73,10 +71,10 @@ TEST_CASE("slopes of distance and toll are those of whole flights turned a littl
       // Both are central differences, of 250 m (83 m with a buffer) and of 9 m. Eddies are 12 km wide or more: the wider is wrong by
       // (83/12000)²/6 = 8e-6 of the slope in each of five links, by less than 1e-3 also where a link multiplies it tenfold.
       const Eigen::Vector3d whole = (a.off - b.off) / (2 * turn);
-      CHECK((slopes.off_by_turn.col(column) - whole).norm() < 1e-3 * kSpeed * kStint * 5);
+      CHECK((slopes.off_by_turn.col(column) - whole).norm() < 1e-3 * test::kSpeed * test::kStint * 5);
       // Toll bends within the buffer of 1 km: a third of its slope's scale (1 per buffer and metre flown in it) over a step of 83 m.
       const double toll = (a.toll - b.toll) / (2 * turn);
-      CHECK(std::abs(slopes.toll_by_turn[column] - toll) < 0.1 * std::abs(toll) + 0.02 * kSpeed * kStint);
+      CHECK(std::abs(slopes.toll_by_turn[column] - toll) < 0.1 * std::abs(toll) + 0.02 * test::kSpeed * test::kStint);
     }
   }
   CHECK(paid >= 3);  // the block is really met

@@ -10,8 +10,6 @@ using namespace glidehelm;
 
 namespace {
 
-constexpr double kStint = 8 * 3600.0, kSpeed = 0.3;
-
 Expected<planning::Plan, planning::PlanFailure> ask(const std::string& method, const planning::Problem& p,
                                                     ocean::FieldRef field) {
   const std::array<ocean::Ocean, 1> members{ocean::Ocean{field, field}};
@@ -38,7 +36,7 @@ TEST_CASE("in still water every method that can is as far on its way as stints a
     // A thousandth of the way for headings of the search and the bend of the rhumb line; the law's own errors are along the track.
     double steering = 0;
     for (const auto& stint : plan->stints) steering += stint.steering_error.si();
-    CHECK(std::abs(plan->remaining.si() - (150e3 - 5 * kSpeed * kStint)) < 150 + steering);
+    CHECK(std::abs(plan->remaining.si() - (150e3 - 5 * test::kSpeed * test::kStint)) < 150 + steering);
     CHECK(plan->remaining == distance(plan->stints.back().surface, to));
   }
 }
@@ -48,7 +46,7 @@ TEST_CASE("carried off by a current that is too strong the least distance is the
   const auto from = geo_point(0, 0), to = destination(from, Bearing{degrees(90)}, Metres{60e3});
   const test::Uniform west{-0.5, 0};
   const auto p = least_distance(from, to, 4);
-  const double expected = 60e3 + 0.5 * p.schedule.surfacing_time(3).count() - kSpeed * 4 * kStint;
+  const double expected = 60e3 + 0.5 * p.schedule.surfacing_time(3).count() - test::kSpeed * 4 * test::kStint;
   REQUIRE(expected > 60e3);
   for (const char* method : {"direct", "cts-astar", "cts-astar-refined", "optimization", "best"}) {
     const auto plan = ask(method, p, west);

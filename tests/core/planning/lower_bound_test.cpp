@@ -11,13 +11,6 @@ using planning::Bound;
 
 namespace {
 
-constexpr double kU = 0.3;
-
-/// East and north metres about (0, 0) as a position. The metric changes by 2e-5 within 40 km of the equator.
-GeoPoint about_equator(double x, double y) {
-  const auto m = LocalMetric::at(0);
-  return GeoPoint::from_kernel(y / m.meridian_radius, x / m.parallel_radius);
-}
 /// A problem that never surfaces, so that closed forms hold.
 planning::Problem submerged(GeoPoint from, GeoPoint to, double radius = 100) {
   auto p = test::problem_between(from, to, radius);
@@ -51,9 +44,9 @@ chart::Chart walls(std::vector<chart::Area> keep_out) {
   return chart::Chart{std::move(sources)};
 }
 chart::Area rectangle(const char* name, double west, double south, double east, double north) {
-  return {
-      name,
-      {about_equator(west, south), about_equator(east, south), about_equator(east, north), about_equator(west, north)}};
+  return {name,
+          {test::on_equator(west, south), test::on_equator(east, south), test::on_equator(east, north),
+           test::on_equator(west, north)}};
 }
 test::FromFunction plane_field(std::function<std::pair<double, double>(double x, double y, double t)> f, double bound) {
   const auto m = LocalMetric::at(0);
@@ -82,8 +75,8 @@ TEST_CASE("the bound in a uniform current is the closed form") {
   // |d − c·t| = U·t + r.
   const double x = 24e3, y = 18e3, r = 100;
   for (const auto& c : {test::Uniform{0.1, 0.05}, test::Uniform{-0.2, 0.1}, test::Uniform{0.5, 0.3}}) {
-    const auto p = submerged(geo_point(0, 0), about_equator(x, y), r);
-    const auto short_of = [&](double t) { return std::hypot(x - c.east * t, y - c.north * t) - kU * t - r; };
+    const auto p = submerged(geo_point(0, 0), test::on_equator(x, y), r);
+    const auto short_of = [&](double t) { return std::hypot(x - c.east * t, y - c.north * t) - test::kSpeed * t - r; };
     double high = 0;  // a current faster than the glider carries it past: the first passage counts
     while (short_of(high) > 0) high += 600;
     const double truth = first_zero(short_of, high - 600, high);
@@ -97,22 +90,23 @@ TEST_CASE("the bound in a linear shear is Zermelo's closed form") {
   const double k = 1e-5, theta0 = 1.1, t = 90e3, r = 100;
   const double a0 = std::tan(theta0), a = a0 - k * t, theta = std::atan(a);
   const auto sec3 = [](double tan) { return 0.5 * (tan * std::hypot(1.0, tan) + std::asinh(tan)); };
-  const double y = kU / k * (1 / std::cos(theta0) - 1 / std::cos(theta));
-  const double x = kU * t / std::cos(theta0) + kU / k * (std::asinh(a0) - std::asinh(a) + sec3(a) - sec3(a0));
+  const double y = test::kSpeed / k * (1 / std::cos(theta0) - 1 / std::cos(theta));
+  const double x =
+      test::kSpeed * t / std::cos(theta0) + test::kSpeed / k * (std::asinh(a0) - std::asinh(a) + sec3(a) - sec3(a0));
   const auto field = plane_field([k](double, double north, double) { return std::pair{k * north, 0.0}; }, 1.2);
-  auto p = submerged(geo_point(0, 0), about_equator(x, y), r);
-  check_truth(bound_of(p, field), t - r / (kU + k * y * std::cos(theta)));
+  auto p = submerged(geo_point(0, 0), test::on_equator(x, y), r);
+  check_truth(bound_of(p, field), t - r / (test::kSpeed + k * y * std::cos(theta)));
 }
 
 TEST_CASE("the bound in a solid rotation is a straight line in the rotating frame") {
   // In a frame that turns with the water the reached set is a disc of radius U·t: |G(−ω·t) − S| = U·t + r.
   const double omega = 1.5e-5, r = 100, sx = -12e3, sy = 3e3, gx = 14e3, gy = 5e3;
   const auto field = plane_field([omega](double x, double y, double) { return std::pair{-omega * y, omega * x}; }, 2.0);
-  const auto p = submerged(about_equator(sx, sy), about_equator(gx, gy), r);
+  const auto p = submerged(test::on_equator(sx, sy), test::on_equator(gx, gy), r);
   const double truth = first_zero(
       [&](double t) {
         const double c = std::cos(omega * t), s = std::sin(omega * t);
-        return std::hypot(c * gx + s * gy - sx, c * gy - s * gx - sy) - kU * t - r;
+        return std::hypot(c * gx + s * gy - sx, c * gy - s * gx - sy) - test::kSpeed * t - r;
       },
       0, 200e3);
   check_truth(bound_of(p, field), truth);
@@ -122,19 +116,19 @@ TEST_CASE("the bound drifts with the surface current between dives") {
   // Still below, a current of 0.4 m/s against the glider at the surface: after n whole cycles the front has come
   // n·(U·stint − 0.4·surface), so the time is that of the distance plus what the drifts took away.
   const test::Uniform still{}, against{-0.4, 0};
-  auto p = test::problem_between(geo_point(0, 0), about_equator(30e3, 0), 100);
+  auto p = test::problem_between(geo_point(0, 0), test::on_equator(30e3, 0), 100);
   p.schedule.surface = p.schedule.time_to_dive = Seconds{1800};
   double x = 0, t = 0;
   for (;;) {
     x -= 0.4 * 1800;
     t += 1800;
-    if (x + kU * 8 * 3600 >= 30e3 - 100) break;
-    x += kU * 8 * 3600;
+    if (x + test::kSpeed * 8 * 3600 >= 30e3 - 100) break;
+    x += test::kSpeed * 8 * 3600;
     t += 8 * 3600;
   }
   const auto bound = planning::lower_bound(p, {still, against}, chart::Chart{}, {});
   REQUIRE(bound);
-  check_truth(*bound, t + (30e3 - 100 - x) / kU);
+  check_truth(*bound, t + (30e3 - 100 - x) / test::kSpeed);
 }
 
 TEST_CASE("halving spacing and step divides the error of the front by four") {
@@ -146,7 +140,7 @@ TEST_CASE("halving spacing and step divides the error of the front by four") {
         return std::pair{-a * std::sin(s * x) * std::cos(s * y), a * std::cos(s * x) * std::sin(s * y)};
       },
       0.4);
-  const auto p = submerged(about_equator(-25e3, -4e3), about_equator(27e3, 9e3), 500);
+  const auto p = submerged(test::on_equator(-25e3, -4e3), test::on_equator(27e3, 9e3), 500);
   const auto arrival = [&](double finer) {
     return planning::front_arrival(p, {field, field}, chart::Chart{}, Metres{2000 / finer}, Seconds{3600 / finer});
   };
@@ -161,35 +155,37 @@ TEST_CASE("a wall is rounded at its corner") {
   // back by a tenth of the spacing and the way round a corner is a polygon, so the bar is wide; the truth must lie in it.
   const auto chart = walls({rectangle("wall", -2e3, -60e3, 2e3, 8e3)});
   const test::Uniform still{};
-  const auto p = submerged(about_equator(-15e3, 0), about_equator(15e3, 0), 100);
+  const auto p = submerged(test::on_equator(-15e3, 0), test::on_equator(15e3, 0), 100);
   const double way = 2 * std::hypot(13e3, 8e3) + 4e3 - 100;
   for (const double spacing : {230.0, 460.0, 920.0}) {
     const auto bound = planning::lower_bound(p, {still, still}, chart, {}, {.spacing = Metres{spacing}});
     REQUIRE(bound);
     REQUIRE(bound->kind == Bound::Kind::arrival);
-    INFO("spacing " << spacing << " bound " << bound->travel_s << " error " << bound->error_s << " truth " << way / kU);
-    CHECK(bound->travel_s <= way / kU);
+    INFO("spacing " << spacing << " bound " << bound->travel_s << " error " << bound->error_s << " truth "
+                    << way / test::kSpeed);
+    CHECK(bound->travel_s <= way / test::kSpeed);
     // Late by a few spacings at the two corners, which the bar takes off again; never earlier than the straight line.
-    CHECK(bound->travel_s + bound->error_s <= way / kU + 6 * spacing / kU);
-    CHECK(bound->travel_s >= 0.98 * (30e3 - 100) / kU);
+    CHECK(bound->travel_s + bound->error_s <= way / test::kSpeed + 6 * spacing / test::kSpeed);
+    CHECK(bound->travel_s >= 0.98 * (30e3 - 100) / test::kSpeed);
   }
 }
 
 TEST_CASE("land that only the field knows is rounded at its corners, with their time in the bar") {
   // The wall of the case before, as the mask of a forecast without a coast file.
   const WithMask water{-2e3, -60e3, 2e3, 8e3};
-  const auto p = submerged(about_equator(-15e3, 0), about_equator(15e3, 0), 100);
+  const auto p = submerged(test::on_equator(-15e3, 0), test::on_equator(15e3, 0), 100);
   const double way = 2 * std::hypot(13e3, 8e3) + 4e3 - 100;
   for (const double spacing : {230.0, 460.0, 920.0}) {
     const auto bound = planning::lower_bound(p, {water, water}, chart::Chart{}, {}, {.spacing = Metres{spacing}});
     REQUIRE(bound);
     REQUIRE(bound->kind == Bound::Kind::arrival);
-    INFO("spacing " << spacing << " bound " << bound->travel_s << " error " << bound->error_s << " truth " << way / kU);
-    CHECK(bound->travel_s <= way / kU);
+    INFO("spacing " << spacing << " bound " << bound->travel_s << " error " << bound->error_s << " truth "
+                    << way / test::kSpeed);
+    CHECK(bound->travel_s <= way / test::kSpeed);
     // Six spacings are the allowance for corners: with the difference of two runs alone (714 s at 920 m, where the front is 2 700 s
     // late) the bound would be later than the truth.
-    CHECK(bound->error_s >= 6 * spacing / kU);
-    CHECK(bound->travel_s + bound->error_s <= way / kU + 6 * spacing / kU);
+    CHECK(bound->error_s >= 6 * spacing / test::kSpeed);
+    CHECK(bound->travel_s + bound->error_s <= way / test::kSpeed + 6 * spacing / test::kSpeed);
   }
 }
 
@@ -212,7 +208,7 @@ TEST_CASE("no plan is earlier than the bound on any analytic sea") {
 
 TEST_CASE("a goal upstream of a current faster than the glider is proven unreachable") {
   const auto field = plane_field([](double, double, double) { return std::pair{0.4, 0.0}; }, 0.4);
-  const auto bound = bound_of(submerged(geo_point(0, 0), about_equator(-20e3, 0)), field);
+  const auto bound = bound_of(submerged(geo_point(0, 0), test::on_equator(-20e3, 0)), field);
   CHECK(bound.kind == Bound::Kind::unreachable);
   CHECK(bound.reason.find("horizon") != std::string::npos);
 }
@@ -221,8 +217,8 @@ TEST_CASE("a goal in a closed lagoon is proven unreachable") {
   const auto chart = walls({rectangle("north", 10e3, 6e3, 30e3, 8e3), rectangle("south", 10e3, -8e3, 30e3, -6e3),
                             rectangle("west", 10e3, -8e3, 12e3, 8e3), rectangle("east", 28e3, -8e3, 30e3, 8e3)});
   const test::Uniform field{0.1, 0};
-  auto p = submerged(geo_point(0, 0), about_equator(20e3, 0));
-  p.horizon_s = test::kT0 + 1.5 * 20e3 / kU;  // time to fill the water around it
+  auto p = submerged(geo_point(0, 0), test::on_equator(20e3, 0));
+  p.horizon_s = test::kT0 + 1.5 * 20e3 / test::kSpeed;  // time to fill the water around it
   const auto bound = planning::lower_bound(p, {field, field}, chart, {}, {.spacing = Metres{600}});
   REQUIRE(bound);
   CHECK(bound->kind == Bound::Kind::unreachable);
@@ -230,8 +226,8 @@ TEST_CASE("a goal in a closed lagoon is proven unreachable") {
 
 TEST_CASE("a horizon that is too short is proven so and one just long enough is not") {
   const test::Uniform still{};
-  auto p = submerged(geo_point(0, 0), about_equator(20e3, 0));
-  const double truth = (20e3 - 100) / kU;
+  auto p = submerged(geo_point(0, 0), test::on_equator(20e3, 0));
+  const double truth = (20e3 - 100) / test::kSpeed;
   p.horizon_s = test::kT0 + 0.98 * truth;
   CHECK(bound_of(p, still).kind == Bound::Kind::unreachable);
   p.horizon_s = test::kT0 + 1.001 * truth;
@@ -267,5 +263,5 @@ TEST_CASE("isochrones of still water are circles") {
   REQUIRE(bound->isochrones.size() >= 3);
   for (const auto& line : bound->isochrones)
     for (const auto& at : line.line)
-      CHECK(distance(p.start.fix, at).si() == Approx(kU * (line.t_s - test::kT0)).epsilon(1e-3));
+      CHECK(distance(p.start.fix, at).si() == Approx(test::kSpeed * (line.t_s - test::kT0)).epsilon(1e-3));
 }

@@ -13,12 +13,6 @@ using planning::WayPoint;
 
 namespace {
 
-planning::Problem always_under() {
-  auto p = test::problem_between(geo_point(0, 0), geo_point(0, 1));
-  p.schedule.surface = Seconds{0};
-  return p;
-}
-constexpr double kU = 0.3;
 const LocalMetric kMetric = LocalMetric::at(0);
 
 WayPoint at(double x, double y, double t) {
@@ -40,7 +34,8 @@ template <class Way>
 double error_of(const test::FromFunction& current, const Way& p, double dt) {
   const Place a = p(0.0), b = p(dt), c = p(1.5 * dt - 1), d = p(1.5 * dt + 1);
   std::uint64_t samples = 0;
-  const auto course = optimal_course({always_under(), {current, current}}, at(a.x, a.y, 0), at(b.x, b.y, dt), samples);
+  const auto course =
+      optimal_course({test::always_under(), {current, current}}, at(a.x, a.y, 0), at(b.x, b.y, dt), samples);
   REQUIRE(course);
   CHECK(samples == 9);
   return std::abs(in_degrees(*course - Course::of(d.x - c.x, d.y - c.y)));
@@ -53,7 +48,7 @@ TEST_CASE("without a gradient the best course goes straight on") {
   std::uint64_t samples = 0;
   for (const double bearing : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
     const auto to = at(6e3 * std::sin(bearing), 6e3 * std::cos(bearing), 2e4);
-    const auto course = optimal_course({always_under(), {current, current}}, at(0, 0, 0), to, samples);
+    const auto course = optimal_course({test::always_under(), {current, current}}, at(0, 0, 0), to, samples);
     REQUIRE(course);
     // The metric changes by 1e-7 over 3 km at the equator.
     CHECK(std::abs((*course - Course{Radians{bearing}}).si()) < 1e-5);
@@ -66,7 +61,8 @@ TEST_CASE("in an eddy that turns like a wheel the best way is straight in the fr
   const double omega = 2e-5;
   const auto current = field([omega](double x, double y) { return std::pair{-omega * y, omega * x}; });
   const auto way = [&](double t) {
-    const double x = 8e3 + kU * t * std::cos(1.0), y = -3e3 + kU * t * std::sin(1.0), turn = omega * t;
+    const double x = 8e3 + test::kSpeed * t * std::cos(1.0), y = -3e3 + test::kSpeed * t * std::sin(1.0),
+                 turn = omega * t;
     return Place{x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn)};
   };
   const double coarse = error_of(current, way, 1.6e4), fine = error_of(current, way, 0.8e4);
@@ -84,9 +80,9 @@ TEST_CASE("in a shear the tangent of the best heading falls steadily") {
     const double dt = until / steps;
     for (int i = 0; i < steps; ++i) {
       const double theta = std::atan(0.8 - a * (i + 0.5) * dt);
-      const double middle = y + 0.5 * dt * kU * std::sin(theta);
-      x += dt * (kU * std::cos(theta) + a * middle);
-      y += dt * kU * std::sin(theta);
+      const double middle = y + 0.5 * dt * test::kSpeed * std::sin(theta);
+      x += dt * (test::kSpeed * std::cos(theta) + a * middle);
+      y += dt * test::kSpeed * std::sin(theta);
     }
     return Place{x, y};
   };
@@ -98,10 +94,10 @@ TEST_CASE("in a shear the tangent of the best heading falls steadily") {
 TEST_CASE("where an edge cannot be held or a current is missing there is no best course") {
   std::uint64_t samples = 0;
   const test::Uniform across{0, 0.5};
-  CHECK_FALSE(optimal_course({always_under(), {across, across}}, at(0, 0, 0), at(6e3, 0, 2e4), samples));
+  CHECK_FALSE(optimal_course({test::always_under(), {across, across}}, at(0, 0, 0), at(6e3, 0, 2e4), samples));
   const test::FromFunction small{[](double, double, double) {
                                    return std::pair{0.0, 0.0};
                                  },
                                  0, test::box_around(geo_point(0, 0), 0.05)};
-  CHECK_FALSE(optimal_course({always_under(), {small, small}}, at(0, 0, 0), at(5e3, 0, 2e4), samples));
+  CHECK_FALSE(optimal_course({test::always_under(), {small, small}}, at(0, 0, 0), at(5e3, 0, 2e4), samples));
 }

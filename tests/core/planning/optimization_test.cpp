@@ -12,8 +12,6 @@ using planning::Kernel;
 
 namespace {
 
-constexpr double kStint = 8 * 3600.0, kSpeed = 0.3;
-
 test::FromFunction uniform(double east, double north) {
   return test::FromFunction{[east, north](double, double, double) {
                               return std::pair{east, north};
@@ -61,9 +59,9 @@ TEST_CASE(
     REQUIRE(plan);
     CHECK_FALSE(plan->reaches_goal());
     REQUIRE(plan->stints.size() == static_cast<std::size_t>(stints));
-    const double all = p.schedule.surfacing_time(stints - 1).count(), under = stints * kStint;
+    const double all = p.schedule.surfacing_time(stints - 1).count(), under = stints * test::kStint;
     const double off_east = goal_east - east * all, off_north = goal_north - north * all;
-    const double expected = std::hypot(off_east, off_north) - kSpeed * under;
+    const double expected = std::hypot(off_east, off_north) - test::kSpeed * under;
     // Flat to 4e-4 of 120 km; and each stint's law ends off the held heading by what it says itself.
     double steering = 0;
     for (const auto& stint : plan->stints) steering += stint.steering_error.si();
@@ -82,7 +80,7 @@ TEST_CASE("upstream of a current that is too strong the distance left grows as t
   const auto plan = ask(planning::Optimization{}, p, field);
   REQUIRE(plan);
   CHECK_FALSE(plan->reaches_goal());
-  const double expected = 60e3 + 0.5 * p.schedule.surfacing_time(2).count() - kSpeed * 3 * kStint;
+  const double expected = 60e3 + 0.5 * p.schedule.surfacing_time(2).count() - test::kSpeed * 3 * test::kStint;
   double steering = 0;
   for (const auto& stint : plan->stints) steering += stint.steering_error.si();
   CHECK(std::abs(plan->remaining.si() - expected) < 20 + steering);
@@ -115,7 +113,7 @@ TEST_CASE("every kernel finds the optimum of two and three stints that a fine gr
     grid(grid, 0);
     // The grid's nearest headings are half a step off: its least is above the optimum by at most ½·(stints)·U·t_s·(step/2)², times
     // four for what the eddies' shear magnifies.
-    const double coarse = 4 * 0.5 * stints * kSpeed * kStint * step * step / 4;
+    const double coarse = 4 * 0.5 * stints * test::kSpeed * test::kStint * step * step / 4;
     for (const auto kernel : planning::kKernels) {
       planning::OptimizationSettings settings;
       settings.kernel = kernel;

@@ -16,8 +16,6 @@ using planning::Refined;
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 Heading turned(Heading h, double degrees_right) { return h + Radians{degrees_right * kDegree}; }
 
 /// Seconds from the fix to the entry into the goal, held headings flown by the exact integrator; infinite without one.

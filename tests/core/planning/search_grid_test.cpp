@@ -9,11 +9,7 @@
 using namespace glidehelm;
 using planning::SearchGrid;
 
-namespace {
-
-constexpr double kDegree = kPi / 180;
-
-}  // namespace
+namespace {}  // namespace
 
 TEST_CASE("positions of one cell lie within one cell's diagonal, at every latitude and across 180 degrees") {
   for (const double lat : {0.0, 28.0, 60.0, -75.0, 80.0})

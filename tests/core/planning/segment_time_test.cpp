@@ -12,26 +12,18 @@ using planning::segment_time;
 
 namespace {
 
-/// On the equator, with surface intervals of no length: the mean motion is that of the dive.
-planning::Problem always_under() {
-  auto p = test::problem_between(geo_point(0, 0), geo_point(0, 1));
-  p.schedule.surface = Seconds{0};
-  return p;
-}
-const double kPerRadian = LocalMetric::at(0).parallel_radius;
-
 Expected<double, NoPassage> eastwards(const MeanMotion& motion, double from_m, double to_m, double t_s = test::kT0) {
   std::uint64_t evaluations = 0;
-  return segment_time(motion, 0, from_m / kPerRadian, 0, to_m / kPerRadian, t_s, evaluations);
+  return segment_time(motion, 0, from_m / test::kEquator, 0, to_m / test::kEquator, t_s, evaluations);
 }
 
 }  // namespace
 
 TEST_CASE("a segment in a uniform current takes what the constrained motion model says, in three samples") {
   const test::Uniform field{0.07, 0.1};
-  const MeanMotion motion{always_under(), {field, field}};
+  const MeanMotion motion{test::always_under(), {field, field}};
   std::uint64_t evaluations = 0;
-  const auto t = segment_time(motion, 0, 0, 0, 20e3 / kPerRadian, test::kT0, evaluations);
+  const auto t = segment_time(motion, 0, 0, 0, 20e3 / test::kEquator, test::kT0, evaluations);
   REQUIRE(t);
   CHECK(*t == Approx(20e3 / (std::sqrt(0.3 * 0.3 - 0.1 * 0.1) + 0.07)).epsilon(1e-9));
   CHECK(evaluations == 3);
@@ -41,14 +33,20 @@ TEST_CASE("a segment is split until its pieces are even: the time is the integra
   // u grows along the way from 0 by a = 1e-5/s: ∫ dx/(U + a·x) = ln(1 + a·L/U)/a. Over a piece the mean of both ends stands for v,
   // which errs by (Δv/v)²/12 of the piece: with Δv ≤ 5 % of U that is 2e-4.
   const double a = 1e-5, length = 20e3;
-  const test::FromFunction field{[a](double, double lon, double) { return std::pair{a * lon * kPerRadian, 0.0}; }, 1};
-  const MeanMotion motion{always_under(), {field, field}};
+  const test::FromFunction field{[a](double, double lon, double) {
+                                   return std::pair{a * lon * test::kEquator, 0.0};
+                                 },
+                                 1};
+  const MeanMotion motion{test::always_under(), {field, field}};
   CHECK(*eastwards(motion, 0, length) == Approx(std::log(1 + a * length / 0.3) / a).epsilon(2.5e-4));
   // An eddy has equal speeds on both sides of its centre: the cross current v = a·x makes √(U² − v²) of the speed:
   // ∫ dx/√(U² − a²x²) from −L/2 to L/2 = 2·asin(a·L/2U)/a. Near v = 0.2 of U = 0.3 the curve costs as little as above.
   const double b = 2e-5;
-  const test::FromFunction eddy{[b](double, double lon, double) { return std::pair{0.0, b * lon * kPerRadian}; }, 1};
-  const MeanMotion round{always_under(), {eddy, eddy}};
+  const test::FromFunction eddy{[b](double, double lon, double) {
+                                  return std::pair{0.0, b * lon * test::kEquator};
+                                },
+                                1};
+  const MeanMotion round{test::always_under(), {eddy, eddy}};
   CHECK(*eastwards(round, -10e3, 10e3) == Approx(2 * std::asin(b * 10e3 / 0.3) / b).epsilon(1e-3));
 }
 
@@ -59,7 +57,7 @@ TEST_CASE("currents count at the time at which the vehicle is there") {
                                    return std::pair{t < test::kT0 + 3600 ? 0.0 : 0.1, 0.0};
                                  },
                                  0.1};
-  const MeanMotion motion{always_under(), {field, field}};
+  const MeanMotion motion{test::always_under(), {field, field}};
   CHECK(*eastwards(motion, 0, 20e3) == Approx(3600 + (20e3 - 1080) / 0.4).margin(100));
 }
 
@@ -77,7 +75,7 @@ TEST_CASE("surface drifts are part of the mean motion: still water takes the sch
 TEST_CASE("a segment that cannot be flown says why") {
   const test::Uniform against{-0.4, 0}, across{0, 0.35};
   for (const ocean::FieldRef field : {ocean::FieldRef{against}, ocean::FieldRef{across}}) {
-    const auto t = eastwards(MeanMotion{always_under(), {field, field}}, 0, 10e3);
+    const auto t = eastwards(MeanMotion{test::always_under(), {field, field}}, 0, 10e3);
     REQUIRE_FALSE(t);
     CHECK(t.error() == NoPassage::too_strong);
   }
@@ -85,7 +83,7 @@ TEST_CASE("a segment that cannot be flown says why") {
                                    return std::pair{0.0, 0.0};
                                  },
                                  0, test::box_around(geo_point(0, 0), 0.05)};
-  const auto t = eastwards(MeanMotion{always_under(), {small, small}}, 0, 10e3);
+  const auto t = eastwards(MeanMotion{test::always_under(), {small, small}}, 0, 10e3);
   REQUIRE_FALSE(t);
   CHECK(t.error() == NoPassage::no_current);
 }

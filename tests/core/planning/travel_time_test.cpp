@@ -14,15 +14,6 @@ using planning::travel_time;
 
 namespace {
 
-/// On the equator, with surface intervals of no length: the mean motion is that of the dive.
-planning::Problem always_under() {
-  auto p = test::problem_between(geo_point(0, 0), geo_point(0, 1));
-  p.schedule.surface = Seconds{0};
-  return p;
-}
-const double kPerRadian = LocalMetric::at(0).parallel_radius;
-constexpr double kU = 0.3;
-
 struct Passage {
   double seconds;
   std::uint64_t samples;
@@ -30,8 +21,8 @@ struct Passage {
 Passage eastwards(ocean::FieldRef field, double from_m, double to_m,
                   double tolerance = planning::kTravelTimeTolerance) {
   Passage p{};
-  const auto t = travel_time({always_under(), {field, field}}, 0, from_m / kPerRadian, 0, to_m / kPerRadian, test::kT0,
-                             p.samples, tolerance);
+  const auto t = travel_time({test::always_under(), {field, field}}, 0, from_m / test::kEquator, 0,
+                             to_m / test::kEquator, test::kT0, p.samples, tolerance);
   REQUIRE(t);
   p.seconds = *t;
   return p;
@@ -39,10 +30,10 @@ Passage eastwards(ocean::FieldRef field, double from_m, double to_m,
 
 /// A current along or across the way as a function of the distance from 0°E (metres) and the time since departure.
 test::FromFunction along(double (*u)(double x, double t)) {
-  return {[u](double, double lon, double t) { return std::pair{u(lon * kPerRadian, t - test::kT0), 0.0}; }, 1};
+  return {[u](double, double lon, double t) { return std::pair{u(lon * test::kEquator, t - test::kT0), 0.0}; }, 1};
 }
 test::FromFunction across(double (*v)(double x, double t)) {
-  return {[v](double, double lon, double t) { return std::pair{0.0, v(lon * kPerRadian, t - test::kT0)}; }, 1};
+  return {[v](double, double lon, double t) { return std::pair{0.0, v(lon * test::kEquator, t - test::kT0)}; }, 1};
 }
 
 }  // namespace
@@ -50,14 +41,14 @@ test::FromFunction across(double (*v)(double x, double t)) {
 TEST_CASE("a travel time in a uniform current is Eichhorn's eq. 3 to 6, in one step") {
   const test::Uniform field{0.07, 0.1};
   const auto p = eastwards(field, 0, 20e3);
-  CHECK(p.seconds == Approx(20e3 / (std::sqrt(kU * kU - 0.1 * 0.1) + 0.07)).epsilon(1e-9));
+  CHECK(p.seconds == Approx(20e3 / (std::sqrt(test::kSpeed * test::kSpeed - 0.1 * 0.1) + 0.07)).epsilon(1e-9));
   CHECK(p.samples == 3);
 }
 
 TEST_CASE("the step is controlled so that a travel time errs by less than half its tolerance") {
   // u grows along the way by a = 4e-5/s: ∫ dx/(U + a·x) = ln(1 + a·L/U)/a. The mean of both ends errs by C·h³, that of two halves by a quarter of
   // it, so what is measured is three times the error: a third of the tolerance, and half of it where C changes within a step.
-  const double a = 4e-5, length = 20e3, exact = std::log(1 + a * length / kU) / a;
+  const double a = 4e-5, length = 20e3, exact = std::log(1 + a * length / test::kSpeed) / a;
   const auto field = along([](double x, double) { return 4e-5 * x; });
   std::uint64_t before = 0;
   for (const double tolerance : {4e-3, 1e-3, 2.5e-4, 6.25e-5}) {
@@ -76,13 +67,14 @@ TEST_CASE("a shear across the way takes its closed form") {
   // none, as if the water rested: only the halves find it.
   const double b = 2e-5;
   const auto shear = across([](double x, double) { return 2e-5 * x; });
-  CHECK(eastwards(shear, -10e3, 10e3).seconds == Approx(2 * std::asin(b * 10e3 / kU) / b).epsilon(0.5e-3));
+  CHECK(eastwards(shear, -10e3, 10e3).seconds == Approx(2 * std::asin(b * 10e3 / test::kSpeed) / b).epsilon(0.5e-3));
 }
 
 TEST_CASE("currents count at the time at which the vehicle comes to them") {
   // u = a·t, the same everywhere: U·T + a·T²/2 = L. Half the tolerance for the steps, as above, and as much again for times that are
   // guessed: a sample is taken anew only where its guess could cost a tolerance.
-  const double a = 5e-6, length = 20e3, exact = (std::sqrt(kU * kU + 2 * a * length) - kU) / a;
+  const double a = 5e-6, length = 20e3,
+               exact = (std::sqrt(test::kSpeed * test::kSpeed + 2 * a * length) - test::kSpeed) / a;
   const auto growing = along([](double, double t) { return 5e-6 * t; });
   CHECK(eastwards(growing, 0, length).seconds == Approx(exact).epsilon(1e-3));
   CHECK(eastwards(growing, 0, length, 1e-4).seconds == Approx(exact).epsilon(1e-4));
@@ -92,7 +84,7 @@ TEST_CASE("a jet in the middle of a way is not stepped over") {
   // ∫ dx/(U + J·sech²(x/w)) over ±10 km by a fine midpoint sum; w = 1 km, a twentieth of the way.
   const auto jet = along([](double x, double) { return 0.3 / std::pow(std::cosh(x / 1000), 2); });
   double exact = 0;
-  for (double x = -10e3 + 0.5; x < 10e3; x += 1) exact += 1 / (kU + 0.3 / std::pow(std::cosh(x / 1000), 2));
+  for (double x = -10e3 + 0.5; x < 10e3; x += 1) exact += 1 / (test::kSpeed + 0.3 / std::pow(std::cosh(x / 1000), 2));
   CHECK(eastwards(jet, -10e3, 10e3).seconds == Approx(exact).epsilon(0.5e-3));
 }
 
@@ -133,18 +125,20 @@ TEST_CASE("a way on which the course cannot be held is infeasible, wherever that
   const auto far_side = across([](double x, double) { return x < 15e3 ? 0.0 : 0.35; });
   for (const ocean::FieldRef field : {ocean::FieldRef{against}, ocean::FieldRef{crossing}, ocean::FieldRef{far_side}}) {
     std::uint64_t samples = 0;
-    const auto t = travel_time({always_under(), {field, field}}, 0, 0, 0, 20e3 / kPerRadian, test::kT0, samples);
+    const auto t =
+        travel_time({test::always_under(), {field, field}}, 0, 0, 0, 20e3 / test::kEquator, test::kT0, samples);
     REQUIRE_FALSE(t);
     CHECK(t.error() == NoPassage::too_strong);
   }
   // Erratum of eq. 6: against a current of 0.4 the larger root is −0.1 m/s, a real number and still no way.
-  CHECK_FALSE(vehicle::crossing_time({1000, 0}, kU, -0.4, 0));
+  CHECK_FALSE(vehicle::crossing_time({1000, 0}, test::kSpeed, -0.4, 0));
   const test::FromFunction small{[](double, double, double) {
                                    return std::pair{0.0, 0.0};
                                  },
                                  0, test::box_around(geo_point(0, 0), 0.05)};
   std::uint64_t samples = 0;
-  const auto out = travel_time({always_under(), {small, small}}, 0, 0, 0, 10e3 / kPerRadian, test::kT0, samples);
+  const auto out =
+      travel_time({test::always_under(), {small, small}}, 0, 0, 0, 10e3 / test::kEquator, test::kT0, samples);
   REQUIRE_FALSE(out);
   CHECK(out.error() == NoPassage::no_current);
 }

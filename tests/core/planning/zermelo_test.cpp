@@ -12,14 +12,10 @@ using namespace glidehelm;
 
 namespace {
 
-constexpr double kU = 0.3, kRadius = 100;
+constexpr double kGoalRadius = 100;
 
-GeoPoint place(double x, double y) {
-  const auto m = LocalMetric::at(0);
-  return GeoPoint::from_kernel(y / m.meridian_radius, x / m.parallel_radius);
-}
 planning::Problem submerged(GeoPoint from, GeoPoint to) {
-  auto p = test::problem_between(from, to, kRadius);
+  auto p = test::problem_between(from, to, kGoalRadius);
   p.schedule.surface = p.schedule.time_to_dive = Seconds{0};
   return p;
 }
@@ -59,9 +55,9 @@ TEST_CASE("the extremals of a uniform current are straight") {
     double low = 0, high = 1e7;
     for (int i = 0; i < 200; ++i) {  // |d - c t| = U t + r
       const double t = 0.5 * (low + high);
-      (std::hypot(x - c.east * t, y - c.north * t) > kU * t + kRadius ? low : high) = t;
+      (std::hypot(x - c.east * t, y - c.north * t) > test::kSpeed * t + kGoalRadius ? low : high) = t;
     }
-    check_closed_form(submerged(geo_point(0, 0), place(x, y)), c, high);
+    check_closed_form(submerged(geo_point(0, 0), test::on_equator(x, y)), c, high);
   }
 }
 
@@ -70,10 +66,12 @@ TEST_CASE("the extremals of a shear are those of Zermelo") {
   const double k = 5e-6, theta0 = 1.1, t = 90e3;
   const double a0 = std::tan(theta0), a = a0 - k * t, theta = std::atan(a);
   const auto sec3 = [](double tan) { return 0.5 * (tan * std::hypot(1.0, tan) + std::asinh(tan)); };
-  const double y = kU / k * (1 / std::cos(theta0) - 1 / std::cos(theta));
-  const double x = kU * t / std::cos(theta0) + kU / k * (std::asinh(a0) - std::asinh(a) + sec3(a) - sec3(a0));
+  const double y = test::kSpeed / k * (1 / std::cos(theta0) - 1 / std::cos(theta));
+  const double x =
+      test::kSpeed * t / std::cos(theta0) + test::kSpeed / k * (std::asinh(a0) - std::asinh(a) + sec3(a) - sec3(a0));
   const auto field = plane_field([k](double, double north) { return std::pair{k * north, 0.0}; }, 1.2);
-  check_closed_form(submerged(geo_point(0, 0), place(x, y)), field, t - kRadius / (kU + k * y * std::cos(theta)));
+  check_closed_form(submerged(geo_point(0, 0), test::on_equator(x, y)), field,
+                    t - kGoalRadius / (test::kSpeed + k * y * std::cos(theta)));
 }
 
 TEST_CASE("the extremals of a solid rotation are straight in the rotating frame") {
@@ -82,9 +80,9 @@ TEST_CASE("the extremals of a solid rotation are straight in the rotating frame"
   double low = 0, high = 200e3;
   for (int i = 0; i < 200; ++i) {
     const double t = 0.5 * (low + high), c = std::cos(omega * t), s = std::sin(omega * t);
-    (std::hypot(c * gx + s * gy - sx, c * gy - s * gx - sy) > kU * t + kRadius ? low : high) = t;
+    (std::hypot(c * gx + s * gy - sx, c * gy - s * gx - sy) > test::kSpeed * t + kGoalRadius ? low : high) = t;
   }
-  check_closed_form(submerged(place(sx, sy), place(gx, gy)), field, high);
+  check_closed_form(submerged(test::on_equator(sx, sy), test::on_equator(gx, gy)), field, high);
 }
 
 TEST_CASE("the heading of an extremal turns as in Eichhorn's general form") {
@@ -92,7 +90,7 @@ TEST_CASE("the heading of an extremal turns as in Eichhorn's general form") {
   // + v_x sin^2 a; clockwise from north is pi/2 - a. The sphere adds tan(lat)/R of the speed, nothing on the equator.
   const double ux = 3e-6, uy = -2e-6, vx = 4e-6, vy = 5e-6;
   const auto field = plane_field([=](double x, double y) { return std::pair{ux * x + uy * y, vx * x + vy * y}; }, 2.0);
-  const auto p = submerged(geo_point(0, 0), place(20e3, 0));
+  const auto p = submerged(geo_point(0, 0), test::on_equator(20e3, 0));
   const planning::ExtremalFlow flow{p, {field, field}};
   for (const double psi : {0.2, 1.0, 2.5, 4.0, 5.5}) {
     const double a = 0.5 * kPi - psi, c = std::cos(a), s = std::sin(a);
@@ -110,7 +108,7 @@ TEST_CASE("in weak currents the extremal takes the time of the bound") {
         return std::pair{-0.1 * std::sin(s * x) * std::cos(s * y), 0.1 * std::cos(s * x) * std::sin(s * y)};
       },
       0.1);
-  const auto p = submerged(place(-25e3, -4e3), place(27e3, 9e3));
+  const auto p = submerged(test::on_equator(-25e3, -4e3), test::on_equator(27e3, 9e3));
   const auto bound = planning::lower_bound(p, {field, field}, chart::Chart{}, {});
   REQUIRE(bound);
   const auto found = shot(p, field);
@@ -123,7 +121,7 @@ TEST_CASE("in weak currents the extremal takes the time of the bound") {
 TEST_CASE("zermelo says when it does not apply") {
   const auto field = test::Uniform{-0.4, 0};
   const std::array<ocean::Ocean, 1> members{ocean::Ocean{field, field}};
-  const auto p = submerged(geo_point(0, 0), place(30e3, 0));
+  const auto p = submerged(geo_point(0, 0), test::on_equator(30e3, 0));
   const auto plan = planning::Zermelo{}.plan(p, members, chart::Chart{}, {}, {});
   if (plan) {
     CHECK_FALSE(plan->reaches_goal());

@@ -9,6 +9,7 @@
 #include "core/base/utc.hpp"
 #include "core/safety/judge.hpp"
 #include "core/safety/rules.hpp"
+#include "tests/support/fields.hpp"
 
 /// A file that passes every rule, the ocean it is judged in, and the handles to break one rule at a time.
 namespace glidehelm::test {
@@ -25,8 +26,6 @@ struct FormulaField {
   [[nodiscard]] ocean::Coverage coverage() const { return box; }
   [[nodiscard]] MetresPerSecond fastest() const { return MetresPerSecond{6}; }
 };
-
-inline Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
 
 inline FormulaField uniform(double east, double north) {
   return {[=](GeoPoint, double, double) -> Answer { return ocean::Sample{current(east, north), false}; }, {}};

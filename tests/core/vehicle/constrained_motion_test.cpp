@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kU = 0.3;
 
-Current current(double speed, double towards_deg) {
+Current flowing(double speed, double towards_deg) {
   const double a = towards_deg * kPi / 180;
   return {MetresPerSecond{speed * std::sin(a)}, MetresPerSecond{speed * std::cos(a)}};
 }
@@ -25,7 +25,7 @@ TEST_CASE("both forms of the constrained motion model agree with each other and 
   for (const double strength : {0.0, 0.1, 0.29, 0.3, 0.31, 0.6, 2.0})
     for (double towards = 0; towards < 360; towards += 30)
       for (double deg = 3; deg < 360; deg += 7) {
-        const auto c = current(strength, towards);
+        const auto c = flowing(strength, towards);
         const auto held = hold_course(course(deg), MetresPerSecond{kU}, c);
         const Offset d{way * course(deg).east(), way * course(deg).north()};
         const auto t = crossing_time(d, kU, c.east.si(), c.north.si());
@@ -47,16 +47,16 @@ TEST_CASE("the feasible courses are the cone around the current: 2.19 with its e
     const double half = std::asin(kU / strength) * 180 / kPi;
     for (const double side : {-1.0, 1.0}) {
       INFO(strength << " m/s, side " << side);
-      CHECK(hold_course(course(120 + side * (half - 0.1)), MetresPerSecond{kU}, current(strength, 120)));
-      CHECK_FALSE(hold_course(course(120 + side * (half + 0.1)), MetresPerSecond{kU}, current(strength, 120)));
+      CHECK(hold_course(course(120 + side * (half - 0.1)), MetresPerSecond{kU}, flowing(strength, 120)));
+      CHECK_FALSE(hold_course(course(120 + side * (half + 0.1)), MetresPerSecond{kU}, flowing(strength, 120)));
     }
     // Against it: |s| ≤ 1 although the vehicle is driven back; 2.16 as printed gives a negative speed.
-    CHECK_FALSE(hold_course(course(300), MetresPerSecond{kU}, current(strength, 120)));
+    CHECK_FALSE(hold_course(course(300), MetresPerSecond{kU}, flowing(strength, 120)));
   }
 }
 
 TEST_CASE("a current as strong as the vehicle gives 2.20 and 2.21: half a circle of courses") {
-  const auto c = current(kU, 70);
+  const auto c = flowing(kU, 70);
   for (const double off : {-89.0, -30.0, 0.0, 45.0, 89.0}) {
     const auto held = hold_course(course(70 + off), MetresPerSecond{kU}, c);
     INFO(off);

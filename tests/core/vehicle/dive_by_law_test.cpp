@@ -6,17 +6,18 @@
 #include "tests/support/planning.hpp"
 
 using namespace glidehelm;
+using test::current;
 
 namespace {
 
 constexpr double kStint = 4 * 3600.0;
 
-struct Setting {
+struct UniformSea {
   test::Uniform field;
   chart::Chart chart;
   vehicle::Waters waters{{field, field}, chart, Metres{0}};
   vehicle::Flight flight;
-  explicit Setting(double east = 0, double north = 0) : field{east, north} {
+  explicit UniformSea(double east = 0, double north = 0) : field{east, north} {
     flight.fix = geo_point(28, -16);
     flight.fix_s = test::kT0;
     flight.goal = {geo_point(40, -16), Metres{1000}};
@@ -24,8 +25,6 @@ struct Setting {
   }
   [[nodiscard]] vehicle::State start() const { return vehicle::state_at(flight.fix, test::kT0, waters); }
 };
-
-Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
 
 GeoPoint off(GeoPoint from, double east, double north) {
   return destination(from, Bearing::of(east, north), Metres{std::hypot(east, north)});
@@ -43,7 +42,7 @@ TEST_CASE("the heading leans into the believed current by the arc sine of its sh
 }
 
 TEST_CASE("a believed current that is true is compensated: the track leads straight to the waypoint") {
-  const Setting s{0.1, 0.05};
+  const UniformSea s{0.1, 0.05};
   const auto to = off(s.flight.fix, 3000, 9000);
   const std::vector<GeoPoint> points{to};
   std::size_t target = 0;
@@ -56,7 +55,7 @@ TEST_CASE("a believed current that is true is compensated: the track leads strai
 }
 
 TEST_CASE("an ignored current carries the glider off by its whole way") {
-  const Setting s{0.2, 0};
+  const UniformSea s{0.2, 0};
   const std::vector<GeoPoint> points{off(s.flight.fix, 0, 20e3)};
   std::size_t target = 0;
   const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{100}, false, {});
@@ -67,7 +66,7 @@ TEST_CASE("an ignored current carries the glider off by its whole way") {
 }
 
 TEST_CASE("a ring is crossed on the dead-reckoned way, and the next waypoint follows under water") {
-  const Setting s;
+  const UniformSea s;
   const auto first = off(s.flight.fix, 0, 2300);
   const std::vector<GeoPoint> points{first, off(first, 20e3, 0)};
   std::size_t target = 0;
@@ -80,7 +79,7 @@ TEST_CASE("a ring is crossed on the dead-reckoned way, and the next waypoint fol
 }
 
 TEST_CASE("after the last waypoint the list begins again when it loops, a single one stays the target") {
-  const Setting s;
+  const UniformSea s;
   const std::vector<GeoPoint> points{off(s.flight.fix, 0, 1500), off(s.flight.fix, 0, -1500)};
   std::size_t target = 0;
   dive_by_law(s.flight, s.waters, s.start(), kStint, points, target, Metres{200}, true, {});
@@ -98,7 +97,7 @@ TEST_CASE("after the last waypoint the list begins again when it loops, a single
 
 TEST_CASE("a current stronger than the glider against its heading is held towards a waypoint up-current") {
   // Wanted heading north, current 0.5 m/s south: the waypoint lies north, the glider points at it and moves away from it.
-  const Setting s{0, -0.5};
+  const UniformSea s{0, -0.5};
   const std::vector<GeoPoint> points{off(s.flight.fix, 0, 3000), off(s.flight.fix, 9000, 0)};
   std::size_t target = 0;
   const auto flown =
@@ -111,7 +110,7 @@ TEST_CASE("a current stronger than the glider against its heading is held toward
 TEST_CASE(
     "a heading bias turns the true way, an aim point that knows it turns it back, and the verifier flies the same") {
   for (const double bias : {-8.0, 8.0}) {
-    Setting s{0.05, 0.02};
+    UniformSea s{0.05, 0.02};
     s.flight.glider.current_correction = 1;
     s.flight.glider.heading_bias = degrees(bias);
     const Current known = current(0.05, 0.02);

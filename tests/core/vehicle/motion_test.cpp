@@ -11,7 +11,7 @@ using vehicle::WaterVelocity;
 
 namespace {
 
-constexpr double kStint = 8 * 3600.0;
+constexpr double kEightHours = 8 * 3600.0;
 
 /// Open water with one field for dives and drifts.
 struct Open {
@@ -40,12 +40,12 @@ TEST_CASE("a stint through still water is as long as its speed says, at any lati
   for (const auto& from : {geo_point(0, 10), geo_point(28, -16), geo_point(60, 2), geo_point(-75, 100),
                            geo_point(80, 0), geo_point(52, 179.95), geo_point(-17, -179.95)})
     for (const double heading : {0.0, 77.0, 135.0, 270.0}) {
-      const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kStint,
+      const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kEightHours,
                           WaterVelocity::of(Heading{degrees(heading)}, MetresPerSecond{0.3}), nullptr);
       INFO(from.lat.degrees() << " " << heading);
       // A constant heading is a rhumb line: at 80° it differs from a geodesic of 8.6 km by (8640/6.4e6·tan 80°)²/24 = 2e-6.
-      CHECK(metres(m.end, from) == Approx(0.3 * kStint).epsilon(1e-4));
-      CHECK(m.end.t_s == Approx(test::kT0 + kStint).margin(1e-5));
+      CHECK(metres(m.end, from) == Approx(0.3 * kEightHours).epsilon(1e-4));
+      CHECK(m.end.t_s == Approx(test::kT0 + kEightHours).margin(1e-5));
       CHECK_FALSE(m.lost);
     }
 }
@@ -56,8 +56,8 @@ TEST_CASE("a uniform current adds its way to the stint's, and a drift is that wa
   const auto from = geo_point(0, 0);  // on the equator north and east keep their scales
   const auto start = state_at(from, test::kT0, sea.waters);
   const auto through = WaterVelocity::of(Heading{degrees(30)}, MetresPerSecond{0.3});
-  const auto flown = move(sea.waters, field, start, kStint, through, nullptr);
-  const double east = (0.3 * 0.5 + 0.2) * kStint, north = (0.3 * std::sqrt(0.75) - 0.1) * kStint;
+  const auto flown = move(sea.waters, field, start, kEightHours, through, nullptr);
+  const double east = (0.3 * 0.5 + 0.2) * kEightHours, north = (0.3 * std::sqrt(0.75) - 0.1) * kEightHours;
   const auto there = destination(from, Bearing::of(east, north), Metres{std::hypot(east, north)});
   // The radii of the ellipsoid change by (y/R)² ≈ 2e-6 over 10 km from the equator: centimetres.
   CHECK(metres(flown.end, there) < 0.5);
@@ -96,9 +96,9 @@ TEST_CASE("in a shear a stint across it is carried along by half the rate times 
   spec.speed_scale = MetresPerSecond{0.1};
   const auto field = *ocean::AnalyticField::make(spec, instant_at(test::kT0), test::box_around(spec.origin, 2));
   const Open sea{field};
-  const auto m = move(sea.waters, field, state_at(spec.origin, test::kT0, sea.waters), kStint,
+  const auto m = move(sea.waters, field, state_at(spec.origin, test::kT0, sea.waters), kEightHours,
                       WaterVelocity::of(Heading{degrees(0)}, MetresPerSecond{0.3}), nullptr);
-  const double north = 0.3 * kStint, east = 0.5 * (0.1 / 10e3) * 0.3 * kStint * kStint;
+  const double north = 0.3 * kEightHours, east = 0.5 * (0.1 / 10e3) * 0.3 * kEightHours * kEightHours;
   const auto [x, y] = field.plane(m.end.at());
   // cos φ at 8.6 km from the equator is 1 − 1e-6; a fourth-order method is exact on a parabola.
   CHECK(x * 10e3 == Approx(east).epsilon(1e-4));
@@ -115,7 +115,7 @@ TEST_CASE("the goal radius is crossed at distance less radius over speed, to a s
         const auto to = destination(from, Bearing{degrees(60)}, Metres{way});
         const vehicle::Disc goal{to, Metres{radius}};
         const auto heading = Heading{geodesic(from, to).departing.from_north()};
-        const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kStint,
+        const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kEightHours,
                             WaterVelocity::of(heading, MetresPerSecond{0.3}), &goal);
         REQUIRE(m.arrival_s);
         // A constant heading is a rhumb line, which ends L²·tan φ·sin(heading)/(2R) beside the geodesic (19 m after 8 km
@@ -125,7 +125,7 @@ TEST_CASE("the goal radius is crossed at distance less radius over speed, to a s
         const double later = (radius - std::sqrt(radius * radius - beside * beside)) / 0.3;
         CHECK(*m.arrival_s - test::kT0 >= (way - radius) / 0.3 - 1.0);
         CHECK(*m.arrival_s - test::kT0 <= (way - radius) / 0.3 + 1.1 * later + 1.0);
-        CHECK(m.end.t_s == Approx(test::kT0 + kStint));  // the stint is flown to its end
+        CHECK(m.end.t_s == Approx(test::kT0 + kEightHours));  // the stint is flown to its end
       }
   }
 }
@@ -137,7 +137,7 @@ TEST_CASE("a track that cuts the disc within one long step arrives, one that pas
   const auto abeam = destination(from, Bearing{degrees(90)}, Metres{4000});
   for (const double offset : {10.0, 45.0, 55.0}) {
     const vehicle::Disc goal{destination(abeam, Bearing{degrees(0)}, Metres{offset}), Metres{50}};
-    const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kStint,
+    const auto m = move(sea.waters, field, state_at(from, test::kT0, sea.waters), kEightHours,
                         WaterVelocity::of(Heading{degrees(90)}, MetresPerSecond{0.3}), &goal);
     INFO(offset);
     // East along the parallel of 28° bends off the geodesic by 4000²·tan 28°/(2·6.4e6) = 0.7 m.
@@ -159,7 +159,7 @@ TEST_CASE("leaving the area, the forecast and the water are results that say so"
   const Open sea{small};
   const auto start = state_at(geo_point(28, -16), test::kT0, sea.waters);
   const auto north = WaterVelocity::of(Heading{degrees(0)}, MetresPerSecond{0.3});
-  const auto out = move(sea.waters, small, start, kStint, north, nullptr);
+  const auto out = move(sea.waters, small, start, kEightHours, north, nullptr);
   REQUIRE(out.lost == Lost::left_area);
   // Stops at the last position whose step stayed inside: within a shortest step (10 s, 3 m) of the edge, 5.55 km away.
   const double edge = (box.north - start.lat) * LocalMetric::at(start.lat).meridian_radius;
@@ -227,10 +227,10 @@ TEST_CASE("the lane step is an hour in eddies that a forecast can hold and short
     spec.speed_scale = MetresPerSecond{0.4};
     const auto field = *ocean::AnalyticField::make(spec, instant_at(test::kT0));
     const auto to = destination(spec.origin, Bearing{degrees(50)}, Metres{300e3});
-    return vehicle::lane_step({field, field}, spec.origin, to, test::kT0, kStint, MetresPerSecond{0.3});
+    return vehicle::lane_step({field, field}, spec.origin, to, test::kT0, kEightHours, MetresPerSecond{0.3});
   };
   CHECK(step_in(30e3) == 3600.0);
-  CHECK(4 * kStint / step_in(30e3) <= 34);
+  CHECK(4 * kEightHours / step_in(30e3) <= 34);
   CHECK(step_in(1e3) < 1800.0);
   CHECK(step_in(1e3) == step_in(1e3));
   const auto still = test::still_water();

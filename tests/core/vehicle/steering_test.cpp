@@ -7,12 +7,11 @@
 
 using namespace glidehelm;
 using model::WaypointRole;
+using test::current;
 using vehicle::aim_point;
 using vehicle::Stint;
 
 namespace {
-
-Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
 
 model::Glider glider(int correction, double believed = 0.3) {
   model::Glider g;

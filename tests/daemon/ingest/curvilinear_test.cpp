@@ -12,8 +12,6 @@ using test::turned_mesh;
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 /// A number in [0, 1) from a linear congruential generator.
 double chance(std::uint64_t& state) {
   state = state * 6364136223846793005ULL + 1442695040888963407ULL;

@@ -14,8 +14,6 @@ using namespace glidehelm::ingest;
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 /// A grid of heights by a function of latitude and longitude (degrees).
 template <class F>
 ocean::Grid heights(std::vector<double> lats, std::vector<double> lons, const F& height) {

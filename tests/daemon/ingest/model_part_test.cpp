@@ -17,8 +17,6 @@ using test::Turned;
 
 namespace {
 
-constexpr double kDegree = kPi / 180;
-
 test::Ingested read(const test::RomsFile& file, const std::string& more = "") {
   const test::ScratchFolder folder;
   return run_ingest(folder, test::make_netcdf(folder, "m.nc", file.cdl(), "netCDF-4") + " " + more);

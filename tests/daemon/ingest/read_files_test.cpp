@@ -45,7 +45,7 @@ std::string half_cdl(bool u, int hour, double east, double north) {
          test::cdl_data(name, along) + "}\n";
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// A ROMS file without positions, and the grid that it lies on.
 std::string currents_cdl() {
@@ -80,8 +80,8 @@ double worst_of(const test::Ingested& result, std::size_t time, double east, dou
   return worst;
 }
 
-/// As kEdge of model_part_test.cpp: half a cell of change of the angle where a centre has one face only.
-constexpr double kEdge = 1.5e-4;
+/// As kBrim of model_part_test.cpp: half a cell of change of the angle where a centre has one face only.
+constexpr double kBrim = 1.5e-4;
 
 }  // namespace
 
@@ -96,23 +96,22 @@ TEST_CASE("NEMO's u and v in two files are paired by their times, and turned by 
   REQUIRE(result.view);
   CHECK(result.view->axes.times_s.size() == 2);
   CHECK(result.view->axes.depths_m == std::vector<double>{5});
-  CHECK(worst_of(result, 0, 0.3, -0.4) < kEdge);
-  CHECK(worst_of(result, 1, 0.1, 0.2) < kEdge);
+  CHECK(worst_of(result, 0, 0.3, -0.4) < kBrim);
+  CHECK(worst_of(result, 1, 0.1, 0.2) < kBrim);
   const auto& facts = result.view->facts;
-  CHECK(contains(facts.layout,
-                 "curvilinear Arakawa C grid of 7 by 8 points (half a cell beside nav_lat, nav_lon), u and v on "
-                 "the faces behind their centres"));
+  CHECK(says(facts.layout,
+             "curvilinear Arakawa C grid of 7 by 8 points (half a cell beside nav_lat, nav_lon), u and v on "
+             "the faces behind their centres"));
   CHECK(facts.sources.size() == 4);
 
   const auto lone = run_ingest(folder, u0 + " " + v6);
   CHECK(lone.ran.code == 1);
-  CHECK(contains(lone.ran.err,
-                 "a_grid_U.nc: it has one component of the velocity only, and no file with the other one at the "
-                 "same times was given"));
+  CHECK(says(lone.ran.err,
+             "a_grid_U.nc: it has one component of the velocity only, and no file with the other one at the "
+             "same times was given"));
   const auto single = run_ingest(folder, u0);
   CHECK(single.ran.code == 5);  // by itself: the other file may come
-  CHECK(
-      contains(single.ran.err, "along an axis of a model's own grid; give the file of the other component beside it"));
+  CHECK(says(single.ran.err, "along an axis of a model's own grid; give the file of the other component beside it"));
 }
 
 TEST_CASE("a grid file serves wherever it stands in the list, or by its option, and is named among the sources once") {
@@ -129,8 +128,8 @@ TEST_CASE("a grid file serves wherever it stands in the list, or by its option, 
     INFO(arguments << result.ran.err);
     REQUIRE(result.view);
     CHECK(result.view->axes.times_s.size() == 2);
-    CHECK(worst_of(result, 1, 0.3, -0.4) < kEdge);
-    CHECK(contains(result.view->facts.layout, "turned by angle"));
+    CHECK(worst_of(result, 1, 0.3, -0.4) < kBrim);
+    CHECK(says(result.view->facts.layout, "turned by angle"));
     // As the arguments stand, so that a set is known by its contents; the numbers are the same.
     std::string names;
     for (const auto& source : result.view->facts.sources) names += " " + source.name;
@@ -142,7 +141,7 @@ TEST_CASE("a grid file serves wherever it stands in the list, or by its option, 
   }
   const auto without = run_ingest(folder, a);
   CHECK(without.ran.code == 5);
-  CHECK(contains(without.ran.err, "name the model's grid file among the files or with --grid-file"));
+  CHECK(says(without.ran.err, "name the model's grid file among the files or with --grid-file"));
 }
 
 TEST_CASE("sets without currents, and grid files that are none, are refused by name") {
@@ -152,13 +151,13 @@ TEST_CASE("sets without currents, and grid files that are none, are refused by n
              other = test::make_netcdf(folder, "other.nc", grid_cdl());
   const auto grids = run_ingest(folder, grid + " " + other);
   CHECK(grids.ran.code == 1);
-  CHECK(contains(grids.ran.err, "grid.nc: it describes a grid, and no file has currents"));
+  CHECK(says(grids.ran.err, "grid.nc: it describes a grid, and no file has currents"));
   const auto wrong = run_ingest(folder, a + " --grid-file " + a);
   CHECK(wrong.ran.code == 1);
-  CHECK(contains(wrong.ran.err, "a.nc: it is given as a grid file, but it does not describe a grid"));
+  CHECK(says(wrong.ran.err, "a.nc: it is given as a grid file, but it does not describe a grid"));
   const auto broken = run_ingest(folder, a + " --grid-file " + (folder / "nothing.nc"));
   CHECK(broken.ran.code != 0);
-  CHECK(contains(broken.ran.err, "nothing.nc"));
+  CHECK(says(broken.ran.err, "nothing.nc"));
   CHECK(run_ingest(folder, a + " --rotation left").ran.code == 2);
   CHECK(run_ingest(folder, a + " --s-levels vtransform=9").ran.code == 2);
 }

@@ -15,8 +15,6 @@ using namespace glidehelm::test;
 
 namespace {
 
-const chart::Chart kOpen;
-
 /// Both sides of one transfer.
 struct Transfer {
   std::string sender, receiver;

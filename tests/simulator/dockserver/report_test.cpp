@@ -13,8 +13,6 @@ using simulator::tell_only;
 
 namespace {
 
-const chart::Chart kOpen;
-
 simulator::GliderSetup setup() {
   simulator::GliderSetup s;
   s.start = geo_point(59.82, 23.3);

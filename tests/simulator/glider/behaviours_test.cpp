@@ -12,8 +12,6 @@ using simulator::GliderSetup;
 
 namespace {
 
-const chart::Chart kOpen;
-
 GliderSetup setup_towards(double bearing_deg, double radius = 200) {
   GliderSetup s;
   s.start = geo_point(40.0, 5.0);

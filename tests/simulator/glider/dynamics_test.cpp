@@ -13,9 +13,6 @@ using simulator::Hull;
 
 namespace {
 
-const chart::Chart kOpen;
-const GeoPoint kHome = geo_point(40.0, 5.0);
-
 std::optional<Accident> swim(Dynamics& d, Heading h, double seconds, double dt) {
   d.begin_dive();
   for (double left = seconds; left > 1e-9; left -= dt)

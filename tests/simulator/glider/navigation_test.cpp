@@ -1,16 +1,17 @@
 #include "simulator/glider/navigation.hpp"
+#include "tests/simulator/support.hpp"
+#include "tests/support/fields.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
 
 using namespace glidehelm;
+using namespace glidehelm::test;
 using simulator::Belief;
 using simulator::GotoList;
 using simulator::Navigator;
 
 namespace {
-
-Current current(double east, double north) { return {MetresPerSecond{east}, MetresPerSecond{north}}; }
 
 GotoList list_of(std::vector<GeoPoint> points, double radius) {
   GotoList list;
@@ -19,8 +20,6 @@ GotoList list_of(std::vector<GeoPoint> points, double radius) {
   list.initial = 0;
   return list;
 }
-
-const GeoPoint kHome = geo_point(40.0, 5.0);
 
 /// Flies `seconds` of dead reckoning; the headings are returned.
 std::vector<double> fly(Navigator& nav, double seconds, double dt) {

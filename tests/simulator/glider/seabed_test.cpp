@@ -12,8 +12,6 @@ using simulator::SeabedSpec;
 
 namespace {
 
-const GeoPoint kHome = geo_point(40.0, 5.0);
-
 /// Water down to 123.4 m east of 5.0°, none of it deeper west of that than 40 m.
 struct Basin {
   Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth z, double) const {

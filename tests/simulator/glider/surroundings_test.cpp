@@ -4,13 +4,11 @@
 #include <cmath>
 
 #include "core/base/local_metric.hpp"
+#include "tests/simulator/support.hpp"
 
 using namespace glidehelm;
+using namespace glidehelm::test;
 using namespace glidehelm::simulator;
-
-namespace {
-const GeoPoint kHome = geo_point(40.0, 5.0);
-}
 
 TEST_CASE("a receiver without noise reads the truth") {
   Gps gps{{}, Random{1}};

@@ -2,6 +2,11 @@
 if(GLIDEHELM_SANITIZE)
   add_compile_options(-fsanitize=${GLIDEHELM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${GLIDEHELM_SANITIZE})
+  # g++ and clang say each in its own way that they sanitize; the few places that have to know read this.
+  add_compile_definitions(GLIDEHELM_SANITIZED)
+  if(GLIDEHELM_SANITIZE MATCHES "address")
+    add_compile_definitions(GLIDEHELM_SANITIZED_ADDRESS)
+  endif()
   if(GLIDEHELM_SANITIZE MATCHES "thread")
     # ThreadSanitizer does not know Asio's bare fences; the queue's mutex orders what they order.
     add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)

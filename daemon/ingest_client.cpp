@@ -23,7 +23,7 @@ constexpr std::size_t kDescriptorsBesideFiles = 64;
 constexpr std::size_t kLeftOutAtMost = 8;
 constexpr double kHole = 1.5;  // of the median step
 // A sanitizer reserves terabytes of address space before main: under a limit its programs cannot start.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GLIDEHELM_SANITIZED)
 constexpr bool kMemoryIsLimited = false;
 #else
 constexpr bool kMemoryIsLimited = true;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr Seconds kVerifierDeadline{10};
 // A sanitizer reserves terabytes of address space before main: under a limit its programs cannot start.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GLIDEHELM_SANITIZED)
 constexpr std::size_t kVerifierMemory = 0;
 #else
 constexpr std::size_t kVerifierMemory = std::size_t{4} << 30;

@@ -23,5 +23,7 @@ std::string lower(std::string_view text);
 bool equal_without_case(std::string_view a, std::string_view b);
 /// Blanks, tabs and line ends cut at both ends.
 std::string_view trimmed(std::string_view text);
+/// What follows the last '/' of a path; all of it when there is none.
+constexpr std::string_view base_name(std::string_view path) { return path.substr(path.rfind('/') + 1); }
 
 }  // namespace glidehelm

@@ -344,7 +344,7 @@ int run_bathymetry(const Arguments& arguments) {
 
 }  // namespace
 
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(GLIDEHELM_SANITIZED_ADDRESS)
 // libnetcdf and HDF5 keep what they had read of a damaged file when they give up; this process ends then. Our own leaks count.
 extern "C" const char* __lsan_default_suppressions();
 extern "C" const char* __lsan_default_suppressions() { return "leak:libnetcdf\nleak:libhdf5\n"; }

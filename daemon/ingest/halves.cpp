@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "daemon/ingest/ensemble.hpp"
 #include "daemon/ingest/part.hpp"
 #include "daemon/ingest/plausible.hpp"
@@ -8,8 +9,6 @@
 namespace glidehelm::ingest {
 
 namespace {
-
-std::string base_name(const std::string& path) { return path.substr(path.rfind('/') + 1); }
 
 /// Puts the north of `north` into `east`.
 Result<Part> paired(Part east, const Part& north) {
@@ -23,8 +22,8 @@ Result<Part> paired(Part east, const Part& north) {
   for (const auto& warning : other.warnings)
     if (std::find(facts.warnings.begin(), facts.warnings.end(), warning) == facts.warnings.end())
       facts.warnings.push_back(warning);
-  facts.recognised_by += ", with " + base_name(north.file);
-  const std::string names = east.file + " with " + base_name(north.file);
+  facts.recognised_by += ", with " + std::string{base_name(north.file)};
+  const std::string names = east.file + " with " + std::string{base_name(north.file)};
   if (auto plausible = make_plausible(grid, facts.warnings); !plausible)
     return fault(names + ": " + plausible.error().what);
   east.file = names;

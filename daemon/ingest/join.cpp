@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <deque>
-#include <filesystem>
 #include <iterator>
 #include <numeric>
 #include <tuple>
 #include <utility>
 
+#include "core/base/text.hpp"
 #include "core/base/utc.hpp"
 
 namespace glidehelm::ingest {
@@ -183,7 +183,7 @@ std::vector<std::string> gathered_warnings(const std::vector<Part>& parts) {
     }
   std::vector<std::string> warnings;
   for (const auto& [text, files] : by_text)
-    warnings.push_back(files.size() == 1 ? std::filesystem::path{parts[files[0]].file}.filename().string() + ": " + text
+    warnings.push_back(files.size() == 1 ? std::string{base_name(parts[files[0]].file)} + ": " + text
                                          : std::to_string(files.size()) + " files: " + text);
   return warnings;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -90,7 +89,7 @@ Result<Done> read_into(Reading& reading, const Variable& variable, const std::st
 void tell_cycle(Reading& reading, const std::string& name) {
   auto& facts = reading.part.grid.facts;
   facts.reference_s = reference_time(reading.file, reading.units);
-  facts.cycle = std::filesystem::path{name}.filename().string();
+  facts.cycle = std::string{base_name(name)};
   if (!std::isnan(facts.reference_s))
     facts.cycle += ", cycle " + utc_text(instant_at(facts.reference_s));
   else if (reading.part.grid.axes.has_time)

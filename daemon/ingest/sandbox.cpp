@@ -7,7 +7,7 @@ namespace glidehelm::ingest {
 Expected<Done, std::string> enter_sandbox(const std::string& output_folder, bool network) {
   world::Confinement order;
   order.read_below = {"/usr", "/lib", "/lib64", "/etc"};
-#if defined(__SANITIZE_ADDRESS__)
+#if defined(GLIDEHELM_SANITIZED_ADDRESS)
   order.read_below.emplace_back("/proc");  // where the search for leaks at the end looks for threads
 #endif
   order.write_below = {output_folder};

@@ -65,7 +65,7 @@ Expected<Done, std::string> permit(int rules, const std::string& path, std::uint
 }
 
 /// A sanitizer's run time makes calls of its own, and looks for leaks in /proc: its builds are not fenced.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GLIDEHELM_SANITIZED)
 constexpr bool kSanitized = true;
 #else
 constexpr bool kSanitized = false;

@@ -87,7 +87,7 @@ struct Disk final : world::Files {
   std::string scratch() override { return "/scratch"; }
 };
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GLIDEHELM_SANITIZED)
 constexpr std::size_t kLimitOfMemory = 0;  // a sanitizer needs terabytes of address space
 #else
 constexpr std::size_t kLimitOfMemory = std::size_t{1} << 30;

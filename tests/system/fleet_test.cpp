@@ -33,7 +33,7 @@ using Json = nlohmann::json;
 namespace {
 
 // Sanitized programs are ten times slower: what they look for shows in a few gliders as well.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(GLIDEHELM_SANITIZED)
 constexpr int kGliders = 6;
 #else
 constexpr int kGliders = 50;

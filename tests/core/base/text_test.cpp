@@ -30,3 +30,10 @@ TEST_CASE("trimming and lower case are independent of the locale") {
   CHECK(lower("TVR20233.MI") == "tvr20233.mi");
   CHECK(equal_without_case("Koskelo", "kOSKELO"));
 }
+
+TEST_CASE("the base name is what follows the last slash") {
+  CHECK(base_name("/dock/forecasts/a.nc") == "a.nc");
+  CHECK(base_name("a.nc") == "a.nc");
+  CHECK(base_name("folder/").empty());
+  CHECK(base_name("").empty());
+}

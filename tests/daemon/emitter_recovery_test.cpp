@@ -298,7 +298,7 @@ TEST_CASE("recovery that is itself killed at any operation ends where it would h
                      power,
                      {Fault::What::error, then, EIO, false},
                      1});
-          for (const std::uint64_t power_again : {0, 4})
+          for (const std::uint64_t power_again : {0U, 4U})
             tally.add({before,
                        Who::nobody,
                        0,

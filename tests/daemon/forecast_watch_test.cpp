@@ -22,7 +22,7 @@ mission::Mission mission_of(std::vector<std::string> patterns) {
 }
 
 /// A watch over /data/*.nc, and everything that it said.
-struct Post {
+struct WatchPost {
   test::ManualWorld world;
   ForecastShelf shelf{world};
   std::vector<std::string> loaded, refused, noted;
@@ -30,7 +30,7 @@ struct Post {
   std::unique_ptr<ForecastWatch> watch;
   mission::Mission mission{mission_of({"/data/*.nc"})};
 
-  Post() {
+  WatchPost() {
     world.files.make_folder_at("/state");
     start();
   }
@@ -67,7 +67,7 @@ struct Post {
 }  // namespace
 
 TEST_CASE("a new cycle is swapped in as a whole, and who holds the old one keeps it") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   REQUIRE(post.watch->current());
@@ -86,7 +86,7 @@ TEST_CASE("a new cycle is swapped in as a whole, and who holds the old one keeps
 }
 
 TEST_CASE("the files that a running plan's verifier opens stay, and go when nobody holds them") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   REQUIRE(post.watch->current()->grid);
@@ -96,7 +96,7 @@ TEST_CASE("the files that a running plan's verifier opens stay, and go when nobo
 }
 
 TEST_CASE("a bad newer file does not replace a good older one: it is said once, and not read again") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   const auto before = post.watch->current();
@@ -116,7 +116,7 @@ TEST_CASE("a bad newer file does not replace a good older one: it is said once, 
 }
 
 TEST_CASE("a refused file that is touched, copied or named anew is known by its content, a corrected one is read") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.shelf.publish_bad("b.nc", "every value is missing");
   post.follow();
@@ -124,7 +124,7 @@ TEST_CASE("a refused file that is touched, copied or named anew is known by its 
     // Children that got as far as reading the bad file's content.
     std::size_t count = 0;
     for (const auto& request : post.world.procs.requests)
-      count += std::count(request.arguments.begin(), request.arguments.end(), "/data/b.nc");
+      count += static_cast<std::size_t>(std::count(request.arguments.begin(), request.arguments.end(), "/data/b.nc"));
     return count;
   };
   REQUIRE(parsed() == 1);
@@ -141,7 +141,7 @@ TEST_CASE("a refused file that is touched, copied or named anew is known by its 
 }
 
 TEST_CASE("a file that kills its reader is refused like another, and named") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.shelf.publish_deadly("b.nc", SIGSEGV);
   post.follow();
@@ -157,7 +157,7 @@ TEST_CASE("a file that kills its reader is refused like another, and named") {
 }
 
 TEST_CASE("the same files need no child after a restart") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   CHECK(post.shelf.children() == 1);
@@ -169,7 +169,7 @@ TEST_CASE("the same files need no child after a restart") {
 }
 
 TEST_CASE("a grid that rotted in the cache is made again, and that is said") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   const auto path = post.watch->current()->grid->path;
@@ -183,7 +183,7 @@ TEST_CASE("a grid that rotted in the cache is made again, and that is said") {
 }
 
 TEST_CASE("after a restart among bad files the last accepted forecast is in use again") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   post.shelf.publish_bad("a.nc", "replaced by an HTML page");
@@ -198,7 +198,7 @@ TEST_CASE("after a restart among bad files the last accepted forecast is in use 
 }
 
 TEST_CASE("a set with a missing piece is not used, and says where the hole is") {
-  Post post;
+  WatchPost post;
   const double begin = post.now_s() - 36 * 3600;
   for (int day = 0; day < 4; ++day)
     post.shelf.publish("day" + std::to_string(day) + ".nc", {0.125, begin, begin + day * 86400.0, 24});
@@ -214,7 +214,7 @@ TEST_CASE("a set with a missing piece is not used, and says where the hole is") 
   CHECK(post.refused[0] ==
         "/data/day2.nc: truncated (the others have nothing between " + at(47) + " and " + at(72) + ")");
   // The same at a start, with nothing accepted before: no forecast rather than one with a hole.
-  Post fresh;
+  WatchPost fresh;
   for (int day = 0; day < 4; ++day)
     fresh.shelf.publish("day" + std::to_string(day) + ".nc", {0.125, begin, begin + day * 86400.0, 24});
   fresh.shelf.publish_bad("day2.nc", "truncated");
@@ -224,7 +224,7 @@ TEST_CASE("a set with a missing piece is not used, and says where the hole is") 
 }
 
 TEST_CASE("what is left of a set is used when it is whole and later, never when it would take us back") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 24));
   post.shelf.publish("b.nc", post.run(0.25, 12));
   post.follow();
@@ -242,7 +242,7 @@ TEST_CASE("what is left of a set is used when it is whole and later, never when 
 }
 
 TEST_CASE("a file that is still being written is tried again after a while, and at once when it changed") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.shelf.publish_growing("b.nc", "10 bytes");
   post.follow();
@@ -261,7 +261,7 @@ TEST_CASE("a file that is still being written is tried again after a while, and 
 }
 
 TEST_CASE("a child that cannot be started or is killed by the system says nothing about the file") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.world.procs.script("glidehelm-ingest", {world::ProcessResult::End::not_started, EAGAIN, "", ""});
   post.follow();
@@ -281,7 +281,7 @@ TEST_CASE("a child that cannot be started or is killed by the system says nothin
 }
 
 TEST_CASE("a forecast of another time is refused: long expired, or far in the future") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12 + 96, 24));  // ended 85 h ago
   post.follow();
   CHECK_FALSE(post.watch->current());
@@ -301,7 +301,7 @@ TEST_CASE("a forecast of another time is refused: long expired, or far in the fu
 }
 
 TEST_CASE("files that are not there yet are waited for") {
-  Post post;
+  WatchPost post;
   post.follow();
   CHECK(post.refused == std::vector<std::string>{"no file matches /data/*.nc"});
   CHECK(post.settled == 1);
@@ -311,7 +311,7 @@ TEST_CASE("files that are not there yet are waited for") {
 }
 
 TEST_CASE("a plan waits for a load only when it has nothing, or when time stands still") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.watch->follow(post.mission);
   CHECK(post.watch->holds_up());
@@ -326,7 +326,7 @@ TEST_CASE("a plan waits for a load only when it has nothing, or when time stands
 }
 
 TEST_CASE("a file must have been left alone for ten seconds, but a simulated clock cannot wait") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 12));
   post.follow();
   const auto& asked = post.world.procs.requests.back().arguments;
@@ -342,7 +342,7 @@ TEST_CASE("a file must have been left alone for ten seconds, but a simulated clo
 }
 
 TEST_CASE("an address shows nothing from outside: it is asked anew when an hour has begun") {
-  Post post;
+  WatchPost post;
   const std::string address = "http://server/sea";
   post.world.files.make_folder_at("http://server");
   const auto serve = [&](double east) {
@@ -453,7 +453,7 @@ TEST_CASE("a watch that is gone is not called any more") {
 }
 
 TEST_CASE("a forecast in use grows old after 36 hours and is not to be planned on after 72, until a newer one comes") {
-  Post post;
+  WatchPost post;
   post.shelf.publish("a.nc", post.run(0.125, 0, 200));  // reaches 200 h: it is its age that counts
   post.follow();
   REQUIRE(post.watch->current());
@@ -471,7 +471,7 @@ TEST_CASE("a forecast in use grows old after 36 hours and is not to be planned o
 }
 
 TEST_CASE("a tide that comes again does not age") {
-  Post post;
+  WatchPost post;
   post.mission.currents.outside_time = ocean::OutsideTime::cycle;
   post.shelf.publish("a.nc", post.run(0.125, 0));
   post.follow();
@@ -497,7 +497,7 @@ mission::Mission two_sources() {
 }  // namespace
 
 TEST_CASE("of several sources the most trusted answers, and the request of a verifier names every grid") {
-  Post post;
+  WatchPost post;
   post.mission = two_sources();
   // Begun long enough ago that the join at the begin of the newer one, 6 h, is over.
   post.shelf.publish("bay1.nc", post.run(0.125, 12));
@@ -519,7 +519,7 @@ TEST_CASE("of several sources the most trusted answers, and the request of a ver
 }
 
 TEST_CASE("a source that cannot be read is told, the others go on, and its last good grid stays in use") {
-  Post post;
+  WatchPost post;
   post.mission = two_sources();
   post.shelf.publish_bad("bay1.nc", "nonsense");
   post.shelf.publish("globe1.nc", post.run(0.25, 20));
@@ -544,7 +544,7 @@ TEST_CASE("a source that cannot be read is told, the others go on, and its last 
 }
 
 TEST_CASE("a source that has expired is left out while another one remains, and not before") {
-  Post post;
+  WatchPost post;
   post.mission = two_sources();
   post.shelf.publish("bay1.nc", post.run(0.125, 0, 300));
   post.shelf.publish("globe1.nc", post.run(0.25, 0, 300));

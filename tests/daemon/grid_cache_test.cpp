@@ -10,7 +10,7 @@ using namespace glidehelm::daemon;
 
 namespace {
 
-constexpr const char* kFolder = "/state/grids";
+constexpr const char* kGrids = "/state/grids";
 
 std::string grid_bytes(double east) {
   return ocean::write_grid(test::make_grid(test::flat_axes({0, 1}, {0, 1}), [east](double, double, double, double) {
@@ -25,7 +25,7 @@ struct Place {
     for (const char* folder : {"/state", "/data"}) files.make_folder_at(folder);
   }
   std::shared_ptr<GridCache> open(GridCache::Limits limits = {}) {
-    auto cache = GridCache::open(files, kFolder, limits);
+    auto cache = GridCache::open(files, kGrids, limits);
     REQUIRE(cache);
     return *cache;
   }
@@ -36,7 +36,7 @@ struct Place {
     REQUIRE(grid);
     return std::move(*grid);
   }
-  std::vector<std::string> names() { return files.names(kFolder); }
+  std::vector<std::string> names() { return files.names(kGrids); }
 };
 
 }  // namespace
@@ -59,7 +59,7 @@ TEST_CASE("a grid that was taken in is found again, also by the next daemon") {
     CHECK(cache->take(key, damage) == nullptr);
     const auto grid = place.put(*cache, key, 0.25);
     CHECK(grid->view.values[0] == 0.25F);
-    CHECK(grid->path == std::string{kFolder} + "/" + key.hex() + ".grid");
+    CHECK(grid->path == std::string{kGrids} + "/" + key.hex() + ".grid");
     CHECK(place.files.names(cache->staging()).empty());
   }
   const auto cache = place.open();
@@ -75,7 +75,7 @@ TEST_CASE("a damaged grid is removed and said, never used, a bad one is never ta
   const auto cache = place.open();
   const auto key = hash("key");
   place.put(*cache, key);
-  const auto path = std::string{kFolder} + "/" + key.hex() + ".grid";
+  const auto path = std::string{kGrids} + "/" + key.hex() + ".grid";
   for (const std::size_t at : {std::size_t{3}, std::size_t{40}, place.files.get(path)->size() - 1}) {
     place.put(*cache, key);
     place.files.rot(path, [at](std::string& bytes) { bytes[at] = static_cast<char>(bytes[at] ^ 4); });
@@ -249,7 +249,7 @@ TEST_CASE("after a power cut at any step the cache opens, and what it gives is w
       place.open();  // the folders are there
       place.files.plan({test::MemoryFiles::Fault::What::power_cut, at, 0, false});
       try {
-        const auto cache = *GridCache::open(place.files, kFolder);
+        const auto cache = *GridCache::open(place.files, kGrids);
         cache->learn("/data/a.nc", FileIdentity::of(place.files.stat("/data/a.nc").value()), hash("a"));
         auto folder = *place.files.open_folder(cache->staging());
         (void)folder->create("g", staged, 0644);

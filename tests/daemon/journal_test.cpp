@@ -19,18 +19,18 @@ using What = JournalError::What;
 
 namespace {
 
-constexpr const char* kFolder = "/state";
+constexpr const char* kState = "/state";
 constexpr const char* kFirst = "/state/journal-000001.log";
 const Instant kUtc{std::chrono::milliseconds{1'800'000'000'123}};
 const Tick kTick{std::chrono::milliseconds{987'654}};
 constexpr world::BootId kBoot{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 255};
 constexpr Journal::Limits kSmall{2048, 4096};
 
-struct Disk {
-  Disk() { files.make_folder_at(kFolder); }
+struct JournalDisk {
+  JournalDisk() { files.make_folder_at(kState); }
   /// Opens the journal; whoever held it has let go.
   Expected<std::unique_ptr<Journal>, JournalError> open(const Journal::Limits& limits = kSmall) {
-    auto opened = files.open_folder(kFolder);
+    auto opened = files.open_folder(kState);
     if (!opened) return unexpected(JournalError{What::file, opened.error().message(), false});
     folder = std::move(opened).value();
     return Journal::open(*folder, kUtc, kTick, kBoot, limits);
@@ -51,7 +51,7 @@ std::vector<std::string> payloads(const Journal& journal) {
 
 /// A disk with one segment of an epoch record and `n` records, all durable.
 std::string segment_of(int n) {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open({1U << 20, 4096});
   REQUIRE(journal);
   for (int i = 0; i < n; ++i) REQUIRE((*journal)->append(RecordType::event, payload(i), kUtc, kTick, Durable::yes));
@@ -75,7 +75,7 @@ std::vector<std::size_t> borders(const std::string& segment) {
 }  // namespace
 
 TEST_CASE("what was appended is read back, with both clocks, boot and type") {
-  Disk disk;
+  JournalDisk disk;
   {
     auto journal = disk.open();
     REQUIRE(journal);
@@ -98,7 +98,7 @@ TEST_CASE("what was appended is read back, with both clocks, boot and type") {
 }
 
 TEST_CASE("everything up to now can be read again from the disk, over segments") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
   for (int i = 1; i <= 40; ++i) REQUIRE((*journal)->append(RecordType::surfacing, payload(i), kUtc, kTick));
@@ -131,7 +131,7 @@ TEST_CASE("a tail torn at any byte is set aside and cut, what was whole before i
   const auto whole = segment_of(4);
   const auto border = borders(whole);
   for (std::size_t cut = 33; cut <= whole.size(); ++cut) {
-    Disk disk;
+    JournalDisk disk;
     disk.files.put(kFirst, whole.substr(0, cut));
     auto journal = disk.open();
     REQUIRE(journal);
@@ -155,7 +155,7 @@ TEST_CASE("a tail torn at any byte is set aside and cut, what was whole before i
 TEST_CASE("a segment whose header never became whole is begun anew") {
   const auto whole = segment_of(1);
   for (std::size_t cut = 0; cut <= 32; ++cut) {
-    Disk disk;
+    JournalDisk disk;
     auto header = whole.substr(0, cut);
     if (cut == 32) header[20] = '\x7f';  // the length reached the disk, the bytes did not
     disk.files.put(kFirst, header);
@@ -173,7 +173,7 @@ TEST_CASE("one flipped bit in any record but the last is corruption, in the last
   std::size_t refused = 0;
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (int bit = 0; bit < 8; ++bit) {
-      Disk disk;
+      JournalDisk disk;
       auto bytes = whole;
       bytes[at] = static_cast<char>(bytes[at] ^ (1 << bit));
       disk.files.put(kFirst, bytes);
@@ -196,7 +196,7 @@ TEST_CASE("one flipped bit in any record but the last is corruption, in the last
 }
 
 TEST_CASE("what a killed process left unsynced is made durable by the next, and its rot is corruption from then on") {
-  Disk disk;
+  JournalDisk disk;
   {
     auto journal = disk.open({1U << 20, 4096});
     REQUIRE(journal);
@@ -214,7 +214,7 @@ TEST_CASE("what a killed process left unsynced is made durable by the next, and 
 }
 
 TEST_CASE("a clean stop can make everything durable") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
   REQUIRE((*journal)->append(RecordType::event, payload(1), kUtc, kTick));
@@ -227,7 +227,7 @@ TEST_CASE("a record that was cut out, repeated or put in from another journal br
   const auto whole = segment_of(3);
   const auto border = borders(whole);
   const auto record = [&](std::size_t i) { return whole.substr(border[i], border[i + 1] - border[i]); };
-  Disk other;
+  JournalDisk other;
   {
     auto journal = other.open({1U << 20, 4096});
     REQUIRE(journal);
@@ -241,7 +241,7 @@ TEST_CASE("a record that was cut out, repeated or put in from another journal br
        {header + record(0) + record(2) + record(3), header + record(0) + record(1) + record(1) + record(2),
         header + record(0) + record(2) + record(1) + record(3),
         header + record(0) + foreign.substr(border[1], border[2] - border[1]) + record(2) + record(3)}) {
-    Disk disk;
+    JournalDisk disk;
     disk.files.put(kFirst, bytes);
     auto journal = disk.open();
     REQUIRE_FALSE(journal);
@@ -251,7 +251,7 @@ TEST_CASE("a record that was cut out, repeated or put in from another journal br
 }
 
 TEST_CASE("segments follow one another, and one that is missing or damaged at its end is corruption") {
-  Disk disk;
+  JournalDisk disk;
   std::vector<std::string> expected;
   {
     auto journal = disk.open();
@@ -261,7 +261,7 @@ TEST_CASE("segments follow one another, and one that is missing or damaged at it
       REQUIRE((*journal)->append(RecordType::event, payload(i), kUtc, kTick));
     }
   }
-  const auto names = disk.files.names(kFolder);
+  const auto names = disk.files.names(kState);
   REQUIRE(std::count_if(names.begin(), names.end(), [](const auto& n) { return n.ends_with(".log"); }) >= 5);
   {
     auto journal = disk.open();
@@ -282,7 +282,7 @@ TEST_CASE("segments follow one another, and one that is missing or damaged at it
 }
 
 TEST_CASE("segments of the real size end at 16 MiB") {
-  Disk disk;
+  JournalDisk disk;
   const std::string large(Journal::kMostPayload, 'y');
   {
     auto journal = disk.open({});
@@ -316,7 +316,7 @@ TEST_CASE("a newer journal is refused, not mended") {
     seal(border[2], border[2] + 80);
     seal(border[2], border[3] - 4);
   }
-  Disk disk;
+  JournalDisk disk;
   disk.files.put(kFirst, bytes);
   auto journal = disk.open();
   REQUIRE_FALSE(journal);
@@ -325,10 +325,10 @@ TEST_CASE("a newer journal is refused, not mended") {
 }
 
 TEST_CASE("a journal has one writer") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
-  auto folder = disk.files.open_folder(kFolder).value();
+  auto folder = disk.files.open_folder(kState).value();
   auto second = Journal::open(*folder, kUtc, kTick);
   REQUIRE_FALSE(second);
   CHECK(second.error().what == What::held);
@@ -337,7 +337,7 @@ TEST_CASE("a journal has one writer") {
 }
 
 TEST_CASE("a failed sync is fatal and is never tried again") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
   disk.files.plan({Fault::What::error, 2, EIO, false});  // write, then fdatasync
@@ -355,7 +355,7 @@ TEST_CASE("a failed sync is fatal and is never tried again") {
 }
 
 TEST_CASE("on a full disk the journal says that it stops, refuses everything, and goes on when there is room") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
   REQUIRE((*journal)->append(RecordType::event, payload(1), kUtc, kTick));
@@ -386,7 +386,7 @@ TEST_CASE("on a full disk the journal says that it stops, refuses everything, an
 }
 
 TEST_CASE("a segment that cannot be opened is not replaced by the old one") {
-  Disk disk;
+  JournalDisk disk;
   auto journal = disk.open();
   REQUIRE(journal);
   std::vector<std::string> expected;
@@ -418,7 +418,7 @@ struct Played {
 };
 
 /// A process: opens, appends 24 records of which every third is durable, over a segment border.
-Played play(Disk& disk, std::vector<std::string> before) {
+Played play(JournalDisk& disk, std::vector<std::string> before) {
   Played played;
   played.accepted = std::move(before);
   played.durable = played.accepted.size();
@@ -462,7 +462,7 @@ std::vector<std::string> ours(const Journal& journal) {
 }
 
 std::size_t operations_of_play() {
-  Disk disk;
+  JournalDisk disk;
   disk.files.plan({Fault::What::error, 1U << 30, EIO, false});
   static_cast<void>(play(disk, {}));
   return disk.files.operations();
@@ -475,7 +475,7 @@ TEST_CASE("power cut at any operation: what was acknowledged survives, the rest 
   const auto operations = operations_of_play();
   for (std::size_t at = 1; at <= operations; ++at)
     for (std::uint64_t seed = 0; seed < 12; ++seed) {
-      Disk disk;
+      JournalDisk disk;
       disk.files.plan({Fault::What::power_cut, at, 0, false});
       const auto first = play(disk, {});
       disk.files.cut_power(seed);
@@ -513,7 +513,7 @@ TEST_CASE(
     for (const int code : {EIO, ENOSPC, EDQUOT, EROFS, EMFILE})
       for (const auto what : {Fault::What::error, Fault::What::short_write})
         for (const bool for_ever : {false, true}) {
-          Disk disk;
+          JournalDisk disk;
           disk.files.plan({what, at, code, for_ever});
           const auto first = play(disk, {});
           disk.files.plan_nothing();

@@ -29,7 +29,7 @@ struct Watch : SessionDesk {
   }
 };
 
-constexpr const char* kFolder = SessionDesk::kFolder;
+constexpr const char* kToGlider = SessionDesk::kFolder;
 constexpr const char* kFile = SessionDesk::kFile;
 
 std::string sending() { return "Starting zModem transfer of goto_l10.ma to/from sim01 size is 812\r\n"; }
@@ -70,10 +70,10 @@ TEST_CASE("a human's file in an open window is heard of within a second, and ano
   desk.answer("2 land");
   Watch watch{desk};
   REQUIRE(watch.session->pilot().stage() == mission::Stage::kept);
-  watch.world.files.put(std::string{kFolder} + "/goto_l11.ma", "of another behaviour");
+  watch.world.files.put(std::string{kToGlider} + "/goto_l11.ma", "of another behaviour");
   watch.pass(Seconds{2});
   CHECK(0 == watch.said("standing down"));
-  watch.world.files.put(std::string{kFolder} + "/GOTO_L10.MA", "DOS knows no case");
+  watch.world.files.put(std::string{kToGlider} + "/GOTO_L10.MA", "DOS knows no case");
   watch.pass(Seconds{1});
   CHECK(watch.said("standing down"));
   CHECK(watch.session->pilot().stage() == mission::Stage::stood_down);

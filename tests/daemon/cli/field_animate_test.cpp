@@ -11,8 +11,6 @@ using namespace glidehelm::cli;
 
 namespace {
 
-constexpr double kDry = std::numeric_limits<double>::quiet_NaN();
-
 ocean::Grid grid_of(std::size_t times, std::size_t rows, std::size_t columns) {
   return test::make_grid({test::steps(1714521600, 3600, times),
                           {0.0},
@@ -117,8 +115,8 @@ TEST_CASE("a map has a time span per time and its arrows point to where the wate
 TEST_CASE("field animate writes both kinds of files and replaces none") {
   const test::ScratchFolder folder;
   test::SeaFile sea;
-  sea.u = [](int t, int z, int j, int i) { return i + j == 0 ? kDry : 0.1 * z + 0.05 + 0.01 * (t + i); };
-  sea.v = [](int, int, int j, int i) { return i + j == 0 ? kDry : 0.1 + 0.01 * j; };
+  sea.u = [](int t, int z, int j, int i) { return i + j == 0 ? test::kDryNode : 0.1 * z + 0.05 + 0.01 * (t + i); };
+  sea.v = [](int, int, int j, int i) { return i + j == 0 ? test::kDryNode : 0.1 + 0.01 * j; };
   FieldAnimateOptions options;
   options.files = {test::make_sea(folder, "a.nc", sea)};
   options.depth_m = 12;

@@ -12,14 +12,16 @@ using namespace glidehelm::cli;
 
 namespace {
 
-constexpr double kDry = std::numeric_limits<double>::quiet_NaN();
-
 /// Numbers that no decimal holds, a dry column, one that ends at the second level.
-test::SeaFile sea() {
+test::SeaFile uneven_sea() {
   test::SeaFile file;
   const auto dry = [](int z, int j, int i) { return (i == 0 && j == 0) || (i == 1 && j == 1 && z == 2); };
-  file.u = [dry](int t, int z, int j, int i) { return dry(z, j, i) ? kDry : std::sin(1 + t + 3 * z + 7 * j + 11 * i); };
-  file.v = [dry](int t, int z, int j, int i) { return dry(z, j, i) ? kDry : std::cos(2 + t + 5 * z + 3 * j + i) / 3; };
+  file.u = [dry](int t, int z, int j, int i) {
+    return dry(z, j, i) ? test::kDryNode : std::sin(1 + t + 3 * z + 7 * j + 11 * i);
+  };
+  file.v = [dry](int t, int z, int j, int i) {
+    return dry(z, j, i) ? test::kDryNode : std::cos(2 + t + 5 * z + 3 * j + i) / 3;
+  };
   return file;
 }
 
@@ -39,7 +41,7 @@ bool same_bits(const ocean::GridView& a, const ocean::GridView& b) {
 TEST_CASE("field convert: a converted file reads back to the same floats bit for bit") {
   const test::ScratchFolder folder;
   FieldConvertOptions options;
-  options.files = {test::make_sea(folder, "a.nc", sea())};
+  options.files = {test::make_sea(folder, "a.nc", uneven_sea())};
   options.out = folder / "b.nc";
   const auto said = convert(options);
   INFO(said.err);
@@ -53,7 +55,7 @@ TEST_CASE("field convert: a converted file reads back to the same floats bit for
 TEST_CASE("field convert: the NetCDF library reads the same numbers and missing where they are missing") {
   const test::ScratchFolder folder;
   FieldConvertOptions options;
-  options.files = {test::make_sea(folder, "a.nc", sea())};
+  options.files = {test::make_sea(folder, "a.nc", uneven_sea())};
   options.out = folder / "b.nc";
   REQUIRE(convert(options).code == 0);
   test::write_bytes(folder / "compare.py", R"(import sys, netCDF4
@@ -80,7 +82,7 @@ for axis in ("lat", "lon", "depth"):
 TEST_CASE("field convert: box and times keep what they need and no more") {
   const test::ScratchFolder folder;
   FieldConvertOptions options;
-  options.files = {test::make_sea(folder, "a.nc", sea())};
+  options.files = {test::make_sea(folder, "a.nc", uneven_sea())};
   options.out = folder / "part.nc";
   options.ingest.area = daemon::IngestOptions::Area{-19.4, -19.2, 30.2, 31};
   options.from = utc_from_text("2024-05-01T00:30:00Z");
@@ -105,7 +107,7 @@ TEST_CASE("field convert: box and times keep what they need and no more") {
 TEST_CASE("field convert: a depth mean is the one that planners take") {
   const test::ScratchFolder folder;
   FieldConvertOptions options;
-  options.files = {test::make_sea(folder, "a.nc", sea())};
+  options.files = {test::make_sea(folder, "a.nc", uneven_sea())};
   options.out = folder / "mean.nc";
   options.depth_mean = {0, 40};
   REQUIRE(convert(options).code == 0);
@@ -117,7 +119,7 @@ TEST_CASE("field convert: a depth mean is the one that planners take") {
 TEST_CASE("field convert: the flat grid opens as the one of the child") {
   const test::ScratchFolder folder;
   FieldConvertOptions options;
-  options.files = {test::make_sea(folder, "a.nc", sea())};
+  options.files = {test::make_sea(folder, "a.nc", uneven_sea())};
   options.out = folder / "b.grid";
   REQUIRE(convert(options).code == 0);
   const auto bytes = test::file_bytes(options.out);

@@ -10,12 +10,14 @@ using nlohmann::json;
 
 namespace {
 
-constexpr double kDry = std::numeric_limits<double>::quiet_NaN();
-
-test::SeaFile sea() {
+test::SeaFile plain_sea() {
   test::SeaFile file;
-  file.u = [](int t, int z, int j, int i) { return i == 0 && j == 0 ? kDry : 0.1 + 0.01 * i - 0.02 * z + 0.03 * t; };
-  file.v = [](int t, int z, int j, int i) { return i == 0 && j == 0 ? kDry : -0.2 + 0.05 * j + 0.01 * z + 0.01 * t; };
+  file.u = [](int t, int z, int j, int i) {
+    return i == 0 && j == 0 ? test::kDryNode : 0.1 + 0.01 * i - 0.02 * z + 0.03 * t;
+  };
+  file.v = [](int t, int z, int j, int i) {
+    return i == 0 && j == 0 ? test::kDryNode : -0.2 + 0.05 * j + 0.01 * z + 0.01 * t;
+  };
   return file;
 }
 test::Ran diff(const std::string& a, const std::string& b, double tolerance = 0) {
@@ -31,7 +33,7 @@ test::Ran diff(const std::string& a, const std::string& b, double tolerance = 0)
 
 TEST_CASE("field diff: a field does not differ from itself") {
   const test::ScratchFolder folder;
-  const auto file = test::make_sea(folder, "a.nc", sea());
+  const auto file = test::make_sea(folder, "a.nc", plain_sea());
   const auto said = diff(file, file);
   CHECK(said.code == 0);
   const auto all = json::parse(said.out)["all"];
@@ -43,13 +45,13 @@ TEST_CASE("field diff: a field does not differ from itself") {
 
 TEST_CASE("field diff: a constant difference is bias and rms and one node's is the maximum with place and time") {
   const test::ScratchFolder folder;
-  auto other = sea();
+  auto other = plain_sea();
   // B − A = (0.03, −0.04): length 0.05 everywhere, and 0.35 more northward at one node.
   other.u = [f = other.u](int t, int z, int j, int i) { return f(t, z, j, i) + 0.03; };
   other.v = [f = other.v](int t, int z, int j, int i) {
     return f(t, z, j, i) - 0.04 + (t == 2 && z == 1 && j == 3 && i == 2 ? -0.35 : 0);
   };
-  const auto said = diff(test::make_sea(folder, "a.nc", sea()), test::make_sea(folder, "b.nc", other), 0.06);
+  const auto said = diff(test::make_sea(folder, "a.nc", plain_sea()), test::make_sea(folder, "b.nc", other), 0.06);
   CHECK(said.code == 1);
   const auto all = json::parse(said.out)["all"];
   // Floats of 0.3 m/s are rounded to 1.5e-8 at most.
@@ -79,7 +81,7 @@ TEST_CASE("field diff: B on other axes is interpolated: it is exact on what is l
     return 0.1 + 0.02 * t - 0.001 * z + 0.03 * (lat - 30) + 0.02 * (lon + 20);
   };
   const double at[] = {0, 1, 3}, zt[] = {0.5, 10, 50}, lt[] = {30, 30.5, 31.25, 32}, ln[] = {-20, -19.5, -19, -18};
-  auto a = sea();
+  auto a = plain_sea();
   a.u = [&](int t, int z, int j, int i) { return value(at[t], zt[z], lt[j], ln[i]); };
   a.v = [&](int, int, int, int) { return 0.2; };
   test::SeaFile b;
@@ -100,10 +102,10 @@ TEST_CASE("field diff: B on other axes is interpolated: it is exact on what is l
 
 TEST_CASE("field diff: without an overlap the message names the axis and both ranges") {
   const test::ScratchFolder folder;
-  auto later = sea(), north = sea();
+  auto later = plain_sea(), north = plain_sea();
   later.times = "30, 31, 33";
   north.lats = "40, 40.5, 41.25, 42";
-  const auto a = test::make_sea(folder, "a.nc", sea());
+  const auto a = test::make_sea(folder, "a.nc", plain_sea());
   const auto in_time = diff(a, test::make_sea(folder, "later.nc", later));
   CHECK(in_time.code == 1);
   CHECK(in_time.err ==
@@ -117,10 +119,10 @@ TEST_CASE("field diff: without an overlap the message names the axis and both ra
 
 TEST_CASE("field diff: on the same axes a node that only one side has is a difference") {
   const test::ScratchFolder folder;
-  auto wetter = sea();
+  auto wetter = plain_sea();
   wetter.u = [f = wetter.u](int t, int z, int j, int i) { return i + j == 0 && z == 0 ? 0.1 : f(t, z, j, i); };
   wetter.v = [f = wetter.v](int t, int z, int j, int i) { return i + j == 0 && z == 0 ? 0.1 : f(t, z, j, i); };
-  const auto said = diff(test::make_sea(folder, "a.nc", sea()), test::make_sea(folder, "b.nc", wetter), 1);
+  const auto said = diff(test::make_sea(folder, "a.nc", plain_sea()), test::make_sea(folder, "b.nc", wetter), 1);
   CHECK(said.code == 1);
   CHECK(json::parse(said.out)["only_b"] == 3);
   CHECK(json::parse(said.out)["only_a"] == 0);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
+#include <limits>
 #include <sstream>
 #include <string>
 
@@ -13,6 +14,8 @@
 
 /// Running the verbs `field …` in process, with the real adapters and the real child.
 namespace glidehelm::test {
+
+inline constexpr double kDryNode = std::numeric_limits<double>::quiet_NaN();
 
 /// The built child is found through PATH, as an installed one would be.
 inline world::World field_world() {

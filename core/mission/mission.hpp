@@ -9,6 +9,7 @@
 #include "core/base/geo.hpp"
 #include "core/base/time.hpp"
 #include "core/chart/chart.hpp"
+#include "core/mission/ensemble.hpp"
 #include "core/model/waypoint_list.hpp"
 #include "core/ocean/analytic.hpp"
 #include "core/ocean/time_axis.hpp"
@@ -72,6 +73,7 @@ struct Currents : CurrentFiles {
   bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
   Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …
   Seconds correction_time{24 * 3600.0};  ///< correction_time_h: … and exp(−|t|/T)
+  std::optional<Ensemble> ensemble;      ///< ensemble; `files` are then those of the control; none: one forecast
   /// There is something to read, not only formulas.
   [[nodiscard]] bool has_files() const { return !files.empty() || !sources.empty(); }
   friend bool operator==(const Currents&, const Currents&) = default;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "core/planning/flight.hpp"
@@ -67,21 +66,23 @@ Expected<std::vector<EachPlan>, Trouble> plan_in_members(const Case& c, const st
   std::vector<planning::Plan> plans(count);
   std::vector<std::optional<Trouble>> troubles(count);
   plans[0] = control ? *control : nothing_planned(c.request.problem, "the control has no plan");
-  std::mutex reading;  // the outer world is not for several threads: members are read, and let go, one at a time
+  world::Turns outside;  // members are read, let go and told of one at a time
   std::size_t done = 1;
   world::for_each_index(count - 1, 0, [&](std::size_t index) {
     const auto k = index + 1;
-    std::unique_lock lock{reading};
-    auto member = load_member(c, static_cast<std::uint32_t>(k), world);
-    if (member) {
-      lock.unlock();
-      plans[k] = plan_in(c, **member);
-      lock.lock();
-      member->reset();
-    } else {
-      troubles[k] = member.error();
-    }
-    if (progress) err << "\r" << progress_bar(++done, count) << std::flush;
+    std::shared_ptr<const daemon::OceanSource> member;
+    outside.take([&] {
+      auto loaded = load_member(c, static_cast<std::uint32_t>(k), world);
+      if (loaded)
+        member = std::move(loaded).value();
+      else
+        troubles[k] = loaded.error();
+    });
+    if (member) plans[k] = plan_in(c, *member);
+    outside.take([&] {
+      member.reset();
+      if (progress) err << "\r" << progress_bar(++done, count) << std::flush;
+    });
   });
   if (progress) err << "\r" << std::string(progress_bar(count, count).size(), ' ') << "\r" << std::flush;
   for (const auto& trouble : troubles)

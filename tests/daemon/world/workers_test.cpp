@@ -1,5 +1,6 @@
 #include "daemon/world/workers.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <thread>
@@ -35,6 +36,21 @@ TEST_CASE("two workers are at work at the same time") {
     while (begun < 2) std::this_thread::yield();
   });
   CHECK(begun == 2);
+}
+
+TEST_CASE("what workers do in turns never overlaps") {
+  world::Turns turns;
+  int inside = 0, most = 0, done = 0;  // not atomic: only a turn touches them
+  world::for_each_index(500, 4, [&](std::size_t) {
+    turns.take([&] {
+      most = std::max(most, ++inside);
+      std::this_thread::yield();
+      --inside;
+      ++done;
+    });
+  });
+  CHECK(most == 1);
+  CHECK(done == 500);
 }
 
 TEST_CASE("no index is no call") {

@@ -42,13 +42,13 @@ template <class Unit, class Number>
 Json value(const std::optional<Unit>& unit, const Number& number) {
   return unit ? Json(number(*unit)) : Json(nullptr);
 }
-Json seconds(const std::optional<Seconds>& v) {
+Json seconds_or_null(const std::optional<Seconds>& v) {
   return value(v, [](Seconds s) { return s.count(); });
 }
-Json metres(const std::optional<Metres>& v) {
+Json metres_or_null(const std::optional<Metres>& v) {
   return value(v, [](Metres m) { return m.si(); });
 }
-Json turn(const std::optional<Radians>& v) {
+Json degrees_or_null(const std::optional<Radians>& v) {
   return value(v, [](Radians r) { return in_degrees(r); });
 }
 
@@ -98,19 +98,21 @@ Json each_json(const std::vector<EachPlan>& plans) {
   Json j{{"members", all.plans},
          {"arrived", all.arrived},
          {"travel_time_s",
-          {{"p10", seconds(all.tenth)}, {"median", seconds(all.median)}, {"p90", seconds(all.ninetieth)}}},
-         {"first_turn_deg", {{"p10", turn(all.turned_left)}, {"p90", turn(all.turned_right)}}},
-         {"apart_m", {{"median", metres(all.apart_median)}, {"most", metres(all.apart_most)}}}};
+          {{"p10", seconds_or_null(all.tenth)},
+           {"median", seconds_or_null(all.median)},
+           {"p90", seconds_or_null(all.ninetieth)}}},
+         {"first_turn_deg", {{"p10", degrees_or_null(all.turned_left)}, {"p90", degrees_or_null(all.turned_right)}}},
+         {"apart_m", {{"median", metres_or_null(all.apart_median)}, {"most", metres_or_null(all.apart_most)}}}};
   j["plans"] = Json::array();
   for (std::size_t k = 0; k < plans.size(); ++k) {
     const auto& [beside, method, reason] = plans[k];
     j["plans"].push_back({{"member", k},
                           {"method", method.empty() ? Json(nullptr) : Json(method)},
-                          {"travel_time_s", seconds(beside.travel)},
+                          {"travel_time_s", seconds_or_null(beside.travel)},
                           {"remaining_distance_m", beside.remaining.si()},
                           {"first_heading_deg", value(beside.first, [](Heading h) { return h.degrees(); })},
-                          {"first_turn_deg", turn(beside.turn)},
-                          {"apart_m", metres(beside.apart)},
+                          {"first_turn_deg", degrees_or_null(beside.turn)},
+                          {"apart_m", metres_or_null(beside.apart)},
                           {"reason", reason}});
   }
   return j;

@@ -12,7 +12,7 @@ using namespace glidehelm;
 namespace {
 
 /// Uniform eastward currents of 0.02, 0.06, −0.06 and −0.6 m/s and a northward one of 0.05 m/s in the third.
-const std::string kEnsemble = R"(netcdf e {
+const std::string kFourSeas = R"(netcdf e {
 dimensions: member = 4 ; lat = 2 ; lon = 2 ;
 variables: double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
   float u(member, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ;
@@ -22,11 +22,11 @@ data: lat = -2, 2 ; lon = 0, 8 ;
   v = 0, 0, 0, 0, 0, 0, 0, 0, 0.05, 0.05, 0.05, 0.05, 0, 0, 0, 0 ;
 })";
 
-struct Desk {
+struct EachDesk {
   test::ScratchFolder folder;
   cli::PlanOptions options;
-  Desk() {
-    const auto file = test::make_netcdf(folder, "e.nc", kEnsemble);
+  EachDesk() {
+    const auto file = test::make_netcdf(folder, "e.nc", kFourSeas);
     test::write_bytes(folder / "m.yaml",
                       "schema: glidehelm/mission/v1\nname: east\nglider: sim01\n"
                       "goal: {lat_deg: 0.0, lon_deg: 3.4, radius_m: 1000}\n"
@@ -44,7 +44,7 @@ struct Desk {
 }  // namespace
 
 TEST_CASE("the plan of each member is the one that is made when that member is the forecast") {
-  Desk desk;
+  EachDesk desk;
   const auto said = desk.plan();
   INFO(said.err);
   REQUIRE(said.code == 0);
@@ -79,7 +79,7 @@ TEST_CASE("the plan of each member is the one that is made when that member is t
 }
 
 TEST_CASE("the sentences say how the plans of the members spread and which do not arrive") {
-  Desk desk;
+  EachDesk desk;
   desk.options.json = false;
   const auto out = desk.plan().out;
   CHECK(out.find("planned in each of 4 members: 3 of the plans arrive, after ") != std::string::npos);
@@ -89,7 +89,7 @@ TEST_CASE("the sentences say how the plans of the members spread and which do no
 }
 
 TEST_CASE("plans for each member need an ensemble and name the member that is not there") {
-  Desk desk;
+  EachDesk desk;
   desk.options.members = 0;
   CHECK(desk.plan().code == 2);
   CHECK(desk.plan().err.find("--each: there is no ensemble") != std::string::npos);

@@ -13,6 +13,7 @@
 #include "core/model/waypoint_list.hpp"
 #include "core/ocean/analytic.hpp"
 #include "core/ocean/time_axis.hpp"
+#include "core/planning/guidance.hpp"
 #include "core/planning/lattice_choice.hpp"
 #include "core/planning/sector_grid.hpp"
 #include "core/vehicle/force_balance.hpp"
@@ -106,14 +107,17 @@ struct Mission {
 
   Currents currents;
 
-  std::string method{"best"};        ///< planning.method
-  int headings{18};                  ///< planning.headings
-  std::optional<Metres> cell;        ///< planning.cell_km; none: half a stint through still water
-  Seconds budget{20};                ///< planning.budget_s
-  std::optional<Seconds> horizon;    ///< planning.horizon_h; none: 3 × the still-water time
-  std::uint64_t seed{1};             ///< planning.seed
-  planning::LatticeChoice lattice;   ///< planning.astar
-  planning::SectorGrid sector_grid;  ///< planning.tve
+  std::string method{"best"};      ///< planning.method
+  int headings{18};                ///< planning.headings
+  std::optional<Metres> cell;      ///< planning.cell_km; none: half a stint through still water
+  Seconds budget{20};              ///< planning.budget_s
+  std::optional<Seconds> horizon;  ///< planning.horizon_h; none: 3 × the still-water time
+  planning::Heuristic heuristic{planning::Guidance{}.heuristic};  ///< planning.heuristic
+  planning::Weighting weighting{planning::Guidance{}.weighting};  ///< planning.weighting
+  double weight{planning::Guidance{}.weight};                     ///< planning.weight
+  std::uint64_t seed{1};                                          ///< planning.seed
+  planning::LatticeChoice lattice;                                ///< planning.astar
+  planning::SectorGrid sector_grid;                               ///< planning.tve
 
   std::string coast_file;                 ///< safety.coast; empty: the model's mask, with a warning
   Metres min_distance_to_coast{2000};     ///< safety.min_distance_to_coast_m

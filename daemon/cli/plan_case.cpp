@@ -112,6 +112,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.problem.headings = m.headings;
   r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
   r.problem.seed = options.seed.value_or(m.seed);
+  r.problem.guidance = {m.heuristic, m.weighting, m.weight};
   r.problem.lattice = m.lattice;
   r.problem.sector_grid = m.sector_grid;
   r.method = m.method;

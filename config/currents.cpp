@@ -321,6 +321,8 @@ void read_sources(const At& at, CurrentsItem& item) {
     SourceDraft source;
     if (expect_map(source_at)) source_fields().read(source_at, source);
     check_files(source_at, source);
+    if (std::any_of(source.files.begin(), source.files.end(), mission::names_member))
+      at.reading.complain(source_at.path + ".files", "{member} in a source: an ensemble is not one of several sources");
     if (source.from && source.to && *source.from >= *source.to)
       at.reading.complain(source_at.path + ".to_h", "not after from_h");
     for (const auto& other : item.sources)
@@ -354,6 +356,18 @@ const Fields<CurrentsItem>& item_fields() {
     sources.parts.push_back(source_fields().shape());
     Fields<C> f;
     add_files(f, false);
+    Fields<EnsembleDraft> ensemble;
+    ensemble.maybe_whole({"members", "how many, the control included", false, "no ensemble"}, &EnsembleDraft::members,
+                         from_to(1, 1000));
+    ensemble.whole({"first",
+                    "number of the control where names of files hold the member's: `{member}` in `files`, `{member:3}` "
+                    "for three digits"},
+                   &EnsembleDraft::first, from_to(0, 100000));
+    f.part({"ensemble",
+            "the files are an ensemble, a file or a dimension of each file to a member; plans are made in the control, "
+            "the "
+            "first member"},
+           &C::ensemble, ensemble);
     f.custom({"sources",
               "instead of `files`: several sources, the most trusted first; each gives way smoothly to the next where "
               "it ends",
@@ -430,6 +444,35 @@ void check_beside_sources(const At& at, const FilesDraft& found) {
   check("s_levels", found.vtransform || found.vstretching || found.theta_s || found.theta_b || found.critical_depth);
 }
 
+/// Files that name their member want an ensemble, and an ensemble wants files, of which all name their member or none.
+void check_ensemble(const At& at, const CurrentsItem& item) {
+  const auto trouble = [&](const std::string& key, const std::string& problem, const std::string& allowed) {
+    at.reading.complain(at.path + "." + key, problem, {}, allowed);
+  };
+  const auto& files = item.files;
+  const auto named = static_cast<std::size_t>(std::count_if(files.begin(), files.end(), mission::names_member));
+  const auto& [members, first] = item.ensemble;
+  if (!members) {
+    if (first != EnsembleDraft{}.first) trouble("ensemble.first", "there is no ensemble", "members beside it");
+    if (named > 0) trouble("files", "{member} without an ensemble", "ensemble: {members: N}");
+    return;
+  }
+  if (files.empty()) return trouble("ensemble", "there are no files that it could be in", "beside files");
+  if (named == 0) {
+    if (first != EnsembleDraft{}.first)
+      trouble("ensemble.first", "no {member} in files: nothing has that number", "{member} in files");
+    return;
+  }
+  for (std::size_t k = 0; k < files.size(); ++k) {
+    const std::string key = "files[" + std::to_string(k) + "]";
+    at.reading.places[at.path + "." + key] = at.node.find("files")->items[k].place;
+    if (!mission::names_member(files[k]))
+      trouble(key, "no {member} in '" + files[k] + "', others have one", "{member} in each, or in none");
+    else if (const auto wrong = mission::trouble_of_pattern(files[k], first, first + *members - 1); !wrong.empty())
+      trouble(key, wrong, "like ocean_{member}.nc or {member:2}/*.nc");
+  }
+}
+
 CurrentsItem read_item(const At& at) {
   CurrentsItem item;
   if (!expect_map(at)) return item;
@@ -446,6 +489,7 @@ CurrentsItem read_item(const At& at) {
   if (!has("files") && !has("analytic") && !has("sources"))
     at.complain("no field", {}, "files: [PATTERN, …], sources: [{…}, …] or analytic: {…}");
   if (has("sources")) check_beside_sources(at, item);
+  check_ensemble(at, item);
   check_files(at, item);
   return item;
 }
@@ -536,6 +580,14 @@ mission::Currents resolve_currents(const std::vector<CurrentsItem>& items) {
   mission::Currents currents;
   for (const auto& item : items) {
     resolve_files(item, currents);
+    if (item.ensemble.members) {
+      mission::Ensemble ensemble{*item.ensemble.members, item.ensemble.first, {}};
+      if (mission::names_member(item.files.front())) {
+        ensemble.files = item.files;
+        currents.files = ensemble.files_of(0);
+      }
+      currents.ensemble = std::move(ensemble);
+    }
     for (const auto& draft : item.sources) {
       mission::CurrentSource source;
       resolve_files(draft, source);

@@ -48,9 +48,16 @@ struct SourceDraft : FilesDraft {
   std::optional<Seconds> from, to;
 };
 
+/// `ensemble:` as it stands in the file.
+struct EnsembleDraft {
+  std::optional<int> members;  ///< none: no ensemble
+  int first{mission::Ensemble{}.first};
+};
+
 /// One item of `currents`: files, sources or one analytic field.
 struct CurrentsItem : FilesDraft {
   std::vector<SourceDraft> sources;
+  EnsembleDraft ensemble;
   Metres blend{mission::Currents{}.blend};
   Seconds join{mission::Currents{}.join};
   std::optional<AnalyticDraft> analytic;

@@ -164,6 +164,23 @@ Fields<MissionDraft> planning_fields() {
   f.maybe_number(
       {"horizon_h", "longest travel time looked at; `auto`: three times that through still water, at least 12 stints"},
       &MissionDraft::horizon, kHour, above(0, 8784), "auto");
+  f.word({"heuristic",
+          "least time left that `cts-astar` and `abs-cts-astar` reckon with: `straight_line` at full speed, `envelope` "
+          "on the "
+          "dive schedule; the stronger, the less work"},
+         &MissionDraft::heuristic,
+         std::vector<std::pair<std::string, planning::Heuristic>>{{"straight_line", planning::Heuristic::straight_line},
+                                                                  {"envelope", planning::Heuristic::envelope}});
+  f.word({"weighting",
+          "what the heuristic is multiplied by, for less work: `static` by 1 + `weight`, `dynamic` by less and less "
+          "towards "
+          "the goal"},
+         &MissionDraft::weighting,
+         std::vector<std::pair<std::string, planning::Weighting>>{{"none", planning::Weighting::none},
+                                                                  {"static", planning::Weighting::constant},
+                                                                  {"dynamic", planning::Weighting::by_depth}});
+  f.number({"weight", "of `weighting`: the search's way may take up to this share longer than without"},
+           &MissionDraft::weight, 1, from_to(0, 10));
   f.part({"astar", "the nodes that `astar` goes over; their spacing is `cell_km`"}, &MissionDraft::lattice,
          lattice_fields());
   f.part({"tve", "the grid that `tve`, `astar-tve`, `ztve` and `zastar-tve` go over"}, &MissionDraft::sector_grid,

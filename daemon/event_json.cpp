@@ -55,6 +55,10 @@ void members(Departure& d, F&& f) {
 }
 inline nlohmann::json write(GridKind k) { return static_cast<int>(k); }
 inline void read(const nlohmann::json& j, GridKind& k) { values::read_enum(j, k, GridKind::triangular); }
+inline nlohmann::json write(Heuristic h) { return static_cast<int>(h); }
+inline void read(const nlohmann::json& j, Heuristic& h) { values::read_enum(j, h, Heuristic::envelope); }
+inline nlohmann::json write(Weighting w) { return static_cast<int>(w); }
+inline void read(const nlohmann::json& j, Weighting& w) { values::read_enum(j, w, Weighting::by_depth); }
 /// Null: the least time; else the epoch second of the least distance.
 inline nlohmann::json write(const Objective& o) {
   const auto* least = std::get_if<MinDistanceAt>(&o);
@@ -71,6 +75,10 @@ void members(LatticeChoice& l, F&& f) {
   f("neighbours", l.neighbours), f("radius", l.radius), f("grid", l.grid);
 }
 template <class F>
+void members(Guidance& g, F&& f) {
+  f("heuristic", g.heuristic), f("weighting", g.weighting), f("weight", g.weight);
+}
+template <class F>
 void members(SectorGrid& g, F&& f) {
   f("sectors", g.sectors), f("spacing_m", g.spacing);
 }
@@ -79,7 +87,7 @@ void members(Problem& p, F&& f) {
   f("start", p.start), f("goal", std::get<PointGoal>(p.goal)), f("glider", p.glider), f("schedule", p.schedule);
   f("believed_current", p.believed_current), f("horizon_s", p.horizon_s), f("coast_margin_m", p.coast_margin);
   f("headings", p.headings), f("cell_m", p.cell), f("seed", p.seed), f("lattice", p.lattice);
-  f("sector_grid", p.sector_grid);
+  f("sector_grid", p.sector_grid), f("guidance", p.guidance);
   f("objective", p.objective);
 }
 }  // namespace glidehelm::planning

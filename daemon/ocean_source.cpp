@@ -35,6 +35,9 @@ ocean::Coverage box_of(const OceanOrder& order) {
   return box;
 }
 
+/// Each member has files of its own.
+bool in_own_files(const mission::Currents& currents) { return currents.ensemble && !currents.ensemble->files.empty(); }
+
 /// As the child reads it.
 std::string s_levels_text(const mission::Currents::SLevels& levels) {
   return fmt::format("vtransform={},vstretching={},theta_s={:.9g},theta_b={:.9g},hc={:.9g}", levels.vtransform,
@@ -60,7 +63,7 @@ IngestOptions ingest_options(const OceanOrder& order) {
                      : currents.rotation == Rotation::none ? "none"
                                                            : "";
   if (currents.s_levels) options.s_levels = s_levels_text(*currents.s_levels);
-  options.member = order.member;
+  if (!in_own_files(currents)) options.member = order.member;
   options.keep_in = order.grids;
   options.cache = order.cache;
   options.settle = order.settle;
@@ -242,7 +245,10 @@ std::shared_ptr<LoadedGrid> accepted_grid(const OceanOrder& order) {
 std::vector<mission::CurrentSource> sets_of(const OceanOrder& order) {
   if (!order.mission.currents.sources.empty()) return order.mission.currents.sources;
   if (order.mission.currents.files.empty()) return {};
-  return {mission::CurrentSource{order.mission.currents, {}, {}, {}, {}}};
+  mission::CurrentSource only{order.mission.currents, {}, {}, {}, {}};
+  if (order.member && in_own_files(order.mission.currents))
+    only.files = order.mission.currents.ensemble->files_of(static_cast<int>(*order.member));
+  return {only};
 }
 
 /// Numbers that are no field to plan on stay so until the files change.

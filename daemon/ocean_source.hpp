@@ -56,7 +56,8 @@ struct OceanOrder {
   Seconds settle{};                    ///< how long a file must have been left alone
   /// Epoch second at which a source that has expired is left out while another one remains; none: all are kept.
   std::optional<double> now_s{};
-  std::optional<std::uint32_t> member{};  ///< of the files' ensemble, from 0; none: 0
+  /// Of the ensemble, from 0; none: 0. Where the mission's members have files of their own it is one of them.
+  std::optional<std::uint32_t> member{};
 };
 /// What of the ocean a verifier opens itself.
 void put_ocean(const OceanSource& ocean, verify::VerifyRequest& request);

@@ -9,9 +9,11 @@
 #include "core/base/geo.hpp"
 #include "core/base/time.hpp"
 #include "core/chart/chart.hpp"
+#include "core/mission/ensemble.hpp"
 #include "core/model/waypoint_list.hpp"
 #include "core/ocean/analytic.hpp"
 #include "core/ocean/time_axis.hpp"
+#include "core/planning/guidance.hpp"
 #include "core/planning/lattice_choice.hpp"
 #include "core/planning/sector_grid.hpp"
 #include "core/vehicle/force_balance.hpp"
@@ -72,6 +74,7 @@ struct Currents : CurrentFiles {
   bool local_correction{true};           ///< local_correction: measured currents correct the forecast near the glider
   Metres correction_length{30'000};      ///< correction_length_km: by exp(−d²/2L²) …
   Seconds correction_time{24 * 3600.0};  ///< correction_time_h: … and exp(−|t|/T)
+  std::optional<Ensemble> ensemble;      ///< ensemble; `files` are then those of the control; none: one forecast
   /// There is something to read, not only formulas.
   [[nodiscard]] bool has_files() const { return !files.empty() || !sources.empty(); }
   friend bool operator==(const Currents&, const Currents&) = default;
@@ -104,14 +107,17 @@ struct Mission {
 
   Currents currents;
 
-  std::string method{"best"};        ///< planning.method
-  int headings{18};                  ///< planning.headings
-  std::optional<Metres> cell;        ///< planning.cell_km; none: half a stint through still water
-  Seconds budget{20};                ///< planning.budget_s
-  std::optional<Seconds> horizon;    ///< planning.horizon_h; none: 3 × the still-water time
-  std::uint64_t seed{1};             ///< planning.seed
-  planning::LatticeChoice lattice;   ///< planning.astar
-  planning::SectorGrid sector_grid;  ///< planning.tve
+  std::string method{"best"};      ///< planning.method
+  int headings{18};                ///< planning.headings
+  std::optional<Metres> cell;      ///< planning.cell_km; none: half a stint through still water
+  Seconds budget{20};              ///< planning.budget_s
+  std::optional<Seconds> horizon;  ///< planning.horizon_h; none: 3 × the still-water time
+  planning::Heuristic heuristic{planning::Guidance{}.heuristic};  ///< planning.heuristic
+  planning::Weighting weighting{planning::Guidance{}.weighting};  ///< planning.weighting
+  double weight{planning::Guidance{}.weight};                     ///< planning.weight
+  std::uint64_t seed{1};                                          ///< planning.seed
+  planning::LatticeChoice lattice;                                ///< planning.astar
+  planning::SectorGrid sector_grid;                               ///< planning.tve
 
   std::string coast_file;                 ///< safety.coast; empty: the model's mask, with a warning
   Metres min_distance_to_coast{2000};     ///< safety.min_distance_to_coast_m

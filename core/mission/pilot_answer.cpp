@@ -32,6 +32,7 @@ planning::Problem Pilot::problem_now() const {
   p.headings = m.headings;
   p.cell = m.cell.value_or(Metres{0});
   p.seed = m.seed;
+  p.guidance = {m.heuristic, m.weighting, m.weight};
   p.lattice = m.lattice;
   p.sector_grid = m.sector_grid;
   p.objective = planning::objective_at(m.nearest_at ? std::optional{epoch_seconds(*m.nearest_at)} : std::nullopt, p);

@@ -34,14 +34,17 @@ namespace glidehelm::planning {
 ///    the crossing of the radius. The search ends when no open label can arrive before the best arrival found.
 ///  - **Headings.** M uniform ones, the first of them the direction to the goal from each node (4.4.2). `abs-cts-astar`
 ///    draws them instead (abs_cts_astar.hpp).
-///  - **Heuristic.** h(n) is the least time in which a vehicle covers the distance to the goal radius when it drifts with
-///    |c|max of the surface field in the surface intervals and dives with U + |c|max of the dive field between them, on
-///    this schedule. *Admissible*: from a surfacing on, any flight spends the same instants drifting and diving, its
-///    distance to the goal shrinks no faster than those speeds at each instant, `FieldRef::fastest` bounds every current
-///    that can be sampled, and the distance used is a lower bound of the geodesic (chords on a sphere of WGS84's smallest
-///    radius of curvature). Surface intervals that must pass are thereby part of the bound. *Consistent*: let D be what
-///    one drift and dive cover at most; h(d) = (surface + t_s) + h(d − D) for d ≥ D, and a stint's child lies no nearer
-///    than d − D.
+///  - **Heuristic.** h(n) is one of to_go.hpp, by `Problem::guidance`. By default it is the least time in which a vehicle covers the
+///    distance to the goal radius when it drifts with |c|max of the surface field in the surface intervals and dives with
+///    U + |c|max of the dive field between them, on this schedule. *Admissible*: from a surfacing on, any flight spends the same
+///    instants drifting and diving, its distance to the goal shrinks no faster than those speeds at each instant,
+///    `FieldRef::fastest` bounds every current that can be sampled, and the distance used is a lower bound of the geodesic
+///    (chords on a sphere of WGS84's smallest radius of curvature). Surface intervals that must pass are thereby part of the bound.
+///    *Consistent*: let D be what one drift and dive cover at most; h(d) = (surface + t_s) + h(d − D) for d ≥ D, and a stint's
+///    child lies no nearer than d − D.
+///  - **Weighting.** f = g + (1 + ε·ω)·h (guidance.hpp): arrivals up to (1 + ε) times later than among the same labels without, for
+///    fewer expansions. The horizon is told by g + h alone. Labels of one cell and as many stints have the same weight, so which
+///    of them is kept does not depend on it.
 ///  - **Ties** of f go to the label created first.
 ///  - **Land.** Every step keeps the margin, plus an allowance for what the list's flight differs from held headings: the
 ///    early share of a stint's way plus 0.5 % (chords). When that finds no way, the search is done again without it;
@@ -99,7 +102,7 @@ struct CtsSearch {
   double arrival_s{};             ///< by the search's own integration; NaN when the goal was not reached
   Statistics statistics;
   std::uint64_t cut_at{};  ///< as in Plan
-  bool exhausted{};        ///< ended by itself: best arrival proven among labels, or nothing left to expand
+  bool exhausted{};  ///< ended by itself: best arrival proven among labels (to the weight), or nothing left to expand
   struct Stopped {
     bool horizon{}, forecast_end{};
     bool no_water{};  ///< land by the mask, water without data, the edge of the field

@@ -57,9 +57,9 @@ using Handle = std::unique_ptr<std::remove_pointer_t<nlopt_opt>, Destroy>;
 
 /// One run: what NLopt calls back, and the best that it has asked for. The variables are the headings and, for least squares, after
 /// them the three residuals.
-class Run {
+class KernelRun {
  public:
-  Run(const KernelTask& task, std::span<const double> guess)
+  KernelRun(const KernelTask& task, std::span<const double> guess)
       : task_{task},
         headings_{guess.size()},
         handle_{nlopt_create(algorithm_of(task.kernel), static_cast<unsigned>(guess.size() + residuals()))},
@@ -82,12 +82,12 @@ class Run {
     nlopt_set_upper_bounds(kernel, highest.data());
     if (residuals() > 0) {
       const std::array<double, kAxes> exact{kFlatEnough, kFlatEnough, kFlatEnough};
-      nlopt_set_min_objective(kernel, &Run::squares, this);
-      nlopt_add_equality_mconstraint(kernel, kAxes, &Run::off_by_residuals, this, exact.data());
+      nlopt_set_min_objective(kernel, &KernelRun::squares, this);
+      nlopt_add_equality_mconstraint(kernel, kAxes, &KernelRun::off_by_residuals, this, exact.data());
     } else {
-      nlopt_set_min_objective(kernel, &Run::squared_distance, this);
+      nlopt_set_min_objective(kernel, &KernelRun::squared_distance, this);
     }
-    if (constrained()) nlopt_add_inequality_constraint(kernel, &Run::toll, this, 0.01 * kMostToll / task_.unit_m);
+    if (constrained()) nlopt_add_inequality_constraint(kernel, &KernelRun::toll, this, 0.01 * kMostToll / task_.unit_m);
     nlopt_set_initial_step1(kernel, kFirstTurn);
     nlopt_set_maxeval(kernel, static_cast<int>(task_.evaluations));
     nlopt_set_stopval(kernel, std::pow(task_.near_enough_m / task_.unit_m, 2));
@@ -126,7 +126,7 @@ class Run {
 
   /// Distance squared, with the toll added to the distance where the kernel takes no constraint.
   static double squared_distance(unsigned n, const double* x, double* slope, void* self) {
-    auto& run = *static_cast<Run*>(self);
+    auto& run = *static_cast<KernelRun*>(self);
     Eigen::Map<Eigen::RowVectorXd> by_turn{slope, slope != nullptr ? static_cast<Eigen::Index>(n) : 0};
     if (!run.look_at(x)) {
       by_turn.setZero();
@@ -143,7 +143,7 @@ class Run {
     return (far + paid) * (far + paid) / unit2;
   }
   static double toll(unsigned n, const double* x, double* slope, void* self) {
-    auto& run = *static_cast<Run*>(self);
+    auto& run = *static_cast<KernelRun*>(self);
     Eigen::Map<Eigen::RowVectorXd> by_turn{slope, slope != nullptr ? static_cast<Eigen::Index>(n) : 0};
     by_turn.setZero();
     if (!run.look_at(x)) return 0;
@@ -162,7 +162,7 @@ class Run {
   }
   /// What makes them residuals: off(headings) − residuals = 0.
   static void off_by_residuals(unsigned m, double* result, unsigned n, const double* x, double* slope, void* self) {
-    auto& run = *static_cast<Run*>(self);
+    auto& run = *static_cast<KernelRun*>(self);
     if (slope != nullptr) std::fill_n(slope, std::size_t{m} * n, 0.0);
     std::fill_n(result, m, 0.0);
     if (!run.look_at(x)) return;
@@ -191,7 +191,7 @@ class Run {
 }  // namespace
 
 std::vector<double> run_kernel(const KernelTask& task, std::span<const double> guess) {
-  return Run{task, guess}.best();
+  return KernelRun{task, guess}.best();
 }
 
 }  // namespace glidehelm::planning

@@ -12,8 +12,8 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr int kMostRounds = 60;
-constexpr double kWorthwhile = 5.0;          // seconds
+constexpr int kMostPasses = 60;
+constexpr double kWorthwhilePass = 5.0;      // seconds
 constexpr double kCoarse = 2.0;              // times the usual cell
 constexpr Metres kWide{1000}, kNarrow{250};  // buffers
 
@@ -104,7 +104,7 @@ OptimizedWay WayOptimizer::improve(OptimizedWay way) {
 
 OptimizedWay WayOptimizer::improve_with(OptimizedWay way, Metres buffer) {
   double lead = 0;
-  for (int round = 0; round < kMostRounds && !purse_.is_empty() && !way.headings.empty(); ++round) {
+  for (int round = 0; round < kMostPasses && !purse_.is_empty() && !way.headings.empty(); ++round) {
     const double until_s = (way.arrives() ? way.arrival_s : way.end_s) - lead;
     auto next = lengthened(measured(kernel(way.headings, until_s, buffer)), way.arrives() ? 1 : 0);
     if (!better_way(next, way)) {
@@ -114,10 +114,10 @@ OptimizedWay WayOptimizer::improve_with(OptimizedWay way, Metres buffer) {
     }
     const bool once = !next.arrives();  // at the same instant again: nothing is left
     const double gained = way.arrives() ? way.arrival_s - next.arrival_s : 0;
-    const bool done = way.arrives() && gained < kWorthwhile && lead == 0;
+    const bool done = way.arrives() && gained < kWorthwhilePass && lead == 0;
     way = std::move(next);
     if (once || done) break;
-    lead = gained < kWorthwhile ? 0 : std::min(gained, 0.25 * (way.arrival_s - problem_.start.fix_s));
+    lead = gained < kWorthwhilePass ? 0 : std::min(gained, 0.25 * (way.arrival_s - problem_.start.fix_s));
   }
   return way;
 }

@@ -16,6 +16,7 @@
 #include "core/model/dive_schedule.hpp"
 #include "core/model/glider.hpp"
 #include "core/ocean/field.hpp"
+#include "core/planning/guidance.hpp"
 #include "core/planning/lattice_choice.hpp"
 #include "core/planning/sector_grid.hpp"
 #include "core/vehicle/motion.hpp"
@@ -63,6 +64,7 @@ struct Problem {
   int headings{18};           ///< M
   Metres cell{};              ///< merging cell of the search; 0 = half a stint through still water
   std::uint64_t seed{1};
+  Guidance guidance;       ///< of cts-astar, abs-cts-astar and what begins with them
   LatticeChoice lattice;   ///< of astar
   SectorGrid sector_grid;  ///< of tve, astar-tve, ztve, zastar-tve
   friend bool operator==(const Problem&, const Problem&) = default;

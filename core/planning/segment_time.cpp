@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostHalvings = 7;
 constexpr double kThreshold = 0.05;  // of the speed
 
-struct Place {
+struct Spot {
   double lat, lon;
 };
 struct Passage {
@@ -23,13 +23,12 @@ class Splitter {
  public:
   Splitter(const MeanMotion& motion, std::uint64_t& evaluations) : motion_{motion}, evaluations_{evaluations} {}
 
-  [[nodiscard]] Expected<Current, NoPassage> current(Place at, double t_s) {
+  [[nodiscard]] Expected<Current, NoPassage> current(Spot at, double t_s) {
     ++evaluations_;
     return motion_.current(at.lat, at.lon, t_s);
   }
 
-  [[nodiscard]] Expected<Passage, NoPassage> pass(Place from, const Current& begin, Place to, double t_s,
-                                                  int halvings) {
+  [[nodiscard]] Expected<Passage, NoPassage> pass(Spot from, const Current& begin, Spot to, double t_s, int halvings) {
     const auto way = local_offset(from.lat, from.lon, to.lat, to.lon);
     const auto seconds = [&](const Current& c) {
       return vehicle::crossing_time(way, motion_.speed(), c.east.si(), c.north.si());
@@ -39,7 +38,7 @@ class Splitter {
     if (!end) return unexpected(end.error());
     const Current mean{0.5 * (begin.east + end->east), 0.5 * (begin.north + end->north)};
     if (halvings < kMostHalvings) {
-      const Place half{0.5 * (from.lat + to.lat), 0.5 * (from.lon + to.lon)};
+      const Spot half{0.5 * (from.lat + to.lat), 0.5 * (from.lon + to.lon)};
       const auto middle = current(half, t_s + 0.5 * guess);
       if (!middle) return unexpected(middle.error());
       if (differ(begin, *end, kThreshold) || differ(*middle, mean, 0.5 * kThreshold)) {

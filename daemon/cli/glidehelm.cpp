@@ -61,10 +61,16 @@ void add_plan(CLI::App& app, Action& action) {
                          "--member", [o](std::uint32_t k) { o->options.member = k; },
                          "Plan in this member of the forecast's ensemble, counted from 0 (default 0)")
                      ->check(CLI::Range(0, 99'999));
-  verb->add_option("--members", o->options.members,
-                   "Fly the plan in the members 0 to N - 1 too: who arrives, when, how near the coast")
+  verb->add_option(
+          "--members", o->options.members,
+          "Fly the plan in the members 0 to N - 1 too: who arrives, when, how near the coast (default: in all of "
+          "the mission's currents.ensemble)")
       ->check(CLI::Range(1, 100'000))
       ->excludes(member);
+  verb->add_flag("--each", o->options.each,
+                 "Plan anew in each of those members: how arrivals, first headings and ways spread")
+      ->excludes(member)
+      ->excludes(budget);
   verb->add_option("--goto", o->options.goto_file, "Write the verified goto list to this new file");
   verb->add_flag("--json", o->options.json, "One JSON document on standard output (schema glidehelm/plan/v1)");
   verb->callback([=, &action] {

@@ -10,6 +10,7 @@
 #include "daemon/candidate.hpp"
 #include "daemon/cli/new_file.hpp"
 #include "daemon/cli/plan_case.hpp"
+#include "daemon/cli/plan_each.hpp"
 #include "daemon/cli/plan_members.hpp"
 #include "daemon/places.hpp"
 #include "daemon/verify/judge_request.hpp"
@@ -216,6 +217,17 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
     err << "glidehelm plan: " << c.error().message << "\n";
     return c.error().code;
   }
+  const auto members = members_to_fly(*c, options, world);
+  const auto misuse =
+      options.each && members && *members == 0
+          ? std::optional{Trouble{
+                2, "--each: there is no ensemble; give --members N, or currents.ensemble in the mission"}}
+          : std::nullopt;
+  if (!members || misuse) {
+    const auto& trouble = misuse ? *misuse : members.error();
+    err << "glidehelm plan: " << trouble.message << "\n";
+    return trouble.code;
+  }
   const auto begin = world.clock.tick();
   const auto waited = [&] { return Seconds{world.clock.tick() - begin}; };
   std::optional<mission::Candidate> found;
@@ -234,23 +246,35 @@ int run_plan(const PlanOptions& options, world::World& world, std::ostream& out,
     if (!places.empty()) problem = places;
   }
   std::vector<planning::MemberFlight> flights;
-  if (found && options.members > 0) {
-    auto flown = fly_in_members(*c, found->plan, options.members, world::is_terminal(2), world, err);
+  if (found && *members > 0) {
+    auto flown = fly_in_members(*c, found->plan, *members, world::is_terminal(2), world, err);
     if (!flown) {
       err << "glidehelm plan: " << flown.error().message << "\n";
       return flown.error().code;
     }
     flights = std::move(flown).value();
   }
+  std::vector<EachPlan> each;
+  if (options.each) {
+    auto plans = plan_in_members(*c, found ? std::optional{found->plan} : std::nullopt, *members, world::is_terminal(2),
+                                 world, err);
+    if (!plans) {
+      err << "glidehelm plan: " << plans.error().message << "\n";
+      return plans.error().code;
+    }
+    each = std::move(plans).value();
+  }
   if (options.json) {
     auto document = plan_json(*c, found, bound, problem, planned.count());
     if (!flights.empty()) document["ensemble"] = members_json(flights);
+    if (!each.empty()) document["ensemble_plans"] = each_json(each);
     out << document.dump() << "\n";
   } else if (found) {
     print_table(*c, *found, out);
     if (arrives) print_certificate(bound, arrival_s - c->request.problem.start.fix_s, out);
     if (!flights.empty()) print_members(flights, out);
   }
+  if (!options.json && !each.empty()) print_each(each, out);
   if (!options.json && proven_unreachable(bound, arrives)) out << "proven unreachable: " << bound->reason << "\n";
   if (!found) {
     err << "glidehelm plan: " << problem << "\n";

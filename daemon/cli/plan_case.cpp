@@ -37,6 +37,7 @@ std::optional<Trouble> too_old(const daemon::OceanSource& ocean, Instant at, Ins
 
 Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& world, std::ostream& err) {
   Case c;
+  c.mission_file = options.mission;
   auto mission = mission_from(options.mission, world.files, c.mission_text);
   if (!mission) return unexpected(mission.error());
   c.mission = std::move(mission).value();
@@ -65,6 +66,11 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   const auto& currents = c.mission.currents;
   if ((options.member || options.members > 0) && currents.files.empty() && currents.sources.empty())
     return unexpected(Trouble{2, "currents are formulas alone: they have no members"});
+  if (const auto& ensemble = currents.ensemble;
+      ensemble && std::max(static_cast<int>(options.member.value_or(0)) + 1, options.members) > ensemble->members)
+    return unexpected(
+        Trouble{2, fmt::format("currents.ensemble has {} members: allowed is --member 0 to {}, --members 1 to {}",
+                               ensemble->members, ensemble->members - 1, ensemble->members)});
   c.order = {c.mission, world.files.scratch(), c.chart->chart.has_coast(), at.value_or(world.clock.utc()),
              c.mission.start};
   c.order.member = options.member;
@@ -106,6 +112,7 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   r.problem.headings = m.headings;
   r.problem.cell = m.cell.value_or(0.5 * (m.horizontal_speed * m.stint));
   r.problem.seed = options.seed.value_or(m.seed);
+  r.problem.guidance = {m.heuristic, m.weighting, m.weight};
   r.problem.lattice = m.lattice;
   r.problem.sector_grid = m.sector_grid;
   r.method = m.method;

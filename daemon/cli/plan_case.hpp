@@ -14,7 +14,7 @@ namespace glidehelm::cli {
 /// Everything that one plan depends on, resolved.
 struct Case {
   mission::Mission mission;
-  std::string mission_text;
+  std::string mission_file, mission_text;
   std::shared_ptr<const daemon::ChartSource> chart;
   std::shared_ptr<const daemon::OceanSource> ocean;
   mission::PlanningRequest request;

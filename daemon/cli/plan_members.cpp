@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "config/load.hpp"
+#include "core/base/utc.hpp"
 #include "core/vehicle/yo_field.hpp"
 #include "daemon/cli/progress_bar.hpp"
 
@@ -30,7 +33,55 @@ planning::MemberFlight fly_in(const ocean::Forecast& member, const planning::Pla
   return planning::fly_in_member(plan, problem, ocean::Ocean{yo, waters.surface}, c.chart->chart);
 }
 
+/// An error of the mission's `currents.ensemble`, or of its `currents` when it has none.
+Trouble trouble_of(const Case& c, const std::string& problem) {
+  const char* key = c.mission.currents.ensemble ? "currents.ensemble" : "currents";
+  return {1, config::error_at(c.mission_text, c.mission_file, key, problem).message()};
+}
+
+/// Epoch second that names the cycle of a forecast; none of one without time.
+std::optional<double> cycle_of(const ocean::ForecastFacts& facts, bool by_reference) {
+  if (by_reference) return facts.reference_s;
+  return facts.has_time ? std::optional{facts.first_s} : std::nullopt;
+}
+
 }  // namespace
+
+Expected<int, Trouble> members_to_fly(const Case& c, const PlanOptions& options, world::World& world) {
+  const auto& ensemble = c.mission.currents.ensemble;
+  const int members = options.members > 0 ? options.members : ensemble && !options.member ? ensemble->members : 0;
+  if (!ensemble) return members;
+  std::string missing, example;
+  for (int member = 0; member < members; ++member)
+    for (const auto& pattern : ensemble->files.empty() ? std::vector<std::string>{} : ensemble->files_of(member)) {
+      if (pattern.find("://") != std::string::npos || !world.files.glob(pattern).empty()) continue;
+      missing += (missing.empty() ? "" : ", ") + std::to_string(ensemble->first + member);
+      if (example.empty()) example = pattern;
+      break;
+    }
+  if (missing.empty()) return members;
+  return unexpected(
+      trouble_of(c, "members without a file, by their numbers: " + missing + "; nothing matches " + example));
+}
+
+Expected<std::shared_ptr<const daemon::OceanSource>, Trouble> load_member(const Case& c, std::uint32_t member,
+                                                                          world::World& world) {
+  auto order = c.order;
+  order.member = member;
+  auto ocean = daemon::load_ocean(order, world);
+  if (!ocean) return unexpected(Trouble{1, "member " + std::to_string(member) + ": " + ocean.error()});
+  const auto &own = (*ocean)->forecast.facts(), &control = c.ocean->forecast.facts();
+  const bool by_reference = std::isfinite(own.reference_s) && std::isfinite(control.reference_s);
+  const auto cycle = cycle_of(own, by_reference), expected = cycle_of(control, by_reference);
+  const auto text = [](const std::optional<double>& cycle_s) {
+    return cycle_s ? utc_text(instant_at(*cycle_s)) : std::string{"no time"};
+  };
+  if (cycle != expected)
+    return unexpected(
+        trouble_of(c, fmt::format("members of different cycles: member {} {} {}, the one that is planned in {}", member,
+                                  by_reference ? "has the reference time" : "begins at", text(cycle), text(expected))));
+  return std::move(ocean).value();
+}
 
 Expected<std::vector<planning::MemberFlight>, Trouble> fly_in_members(const Case& c, const planning::Plan& plan,
                                                                       int members, bool progress, world::World& world,
@@ -42,12 +93,10 @@ Expected<std::vector<planning::MemberFlight>, Trouble> fly_in_members(const Case
   };
   for (std::uint32_t member = 0; member < count; ++member) {
     tell(progress_bar(flights.size(), count));
-    auto order = c.order;
-    order.member = member;
-    const auto ocean = daemon::load_ocean(order, world);
+    const auto ocean = load_member(c, member, world);
     if (!ocean) {
       if (progress) err << "\n";
-      return unexpected(Trouble{1, "member " + std::to_string(member) + ": " + ocean.error()});
+      return unexpected(ocean.error());
     }
     flights.push_back(fly_in((*ocean)->forecast, plan, c));
   }

@@ -138,6 +138,7 @@ Expected<std::shared_ptr<const daemon::OceanSource>, Trouble> model_of_truth(con
   if (o.truth.empty()) return c.ocean;
   auto mission = c.mission;
   mission.currents.sources.clear();
+  mission.currents.ensemble.reset();
   mission.currents.files = o.truth;
   auto ocean = daemon::load_ocean({mission, world.files.scratch(), c.chart->chart.has_coast(),
                                    instant_at(c.request.problem.start.fix_s), mission.start},

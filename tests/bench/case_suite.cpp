@@ -47,7 +47,7 @@ std::vector<Eddy> eddies_of(const SeaPlan& sea, Dice& dice) {
   return all;
 }
 
-ocean::GriddedField field_of(const SeaPlan& sea, Dice& dice) {
+ocean::GriddedField field_of(const SeaPlan& sea, const std::vector<Eddy>& all) {
   const bool moves = sea.hours > 0;
   const double per_lon = kMetresPerDegree * std::cos(kMiddleLat * kPi / 180);
   ocean::GridAxes axes{
@@ -61,7 +61,6 @@ ocean::GriddedField field_of(const SeaPlan& sea, Dice& dice) {
   const int columns = static_cast<int>(std::ceil(sea.half_east / per_lon * kCellsPerDegree)) + 20;
   for (int j = -rows; j <= rows; ++j) axes.lats_deg.push_back(kMiddleLat + j / kCellsPerDegree);
   for (int i = -columns; i <= columns; ++i) axes.lons_deg.push_back(kMiddleLon + i / kCellsPerDegree);
-  const auto all = eddies_of(sea, dice);
   auto grid = test::make_grid(std::move(axes), [&](double lat, double lon, double, double t) {
     const double age = moves ? t - kT0 : 0.0;
     double east = 0, north = 0;
@@ -78,6 +77,8 @@ ocean::GriddedField field_of(const SeaPlan& sea, Dice& dice) {
   });
   return ocean::GriddedField{std::move(grid), {}};
 }
+
+ocean::GriddedField field_of(const SeaPlan& sea, Dice& dice) { return field_of(sea, eddies_of(sea, dice)); }
 
 GeoPoint offset_from(GeoPoint p, double bearing, double metres) {
   return destination(p, Bearing{Radians{bearing}}, Metres{metres});
@@ -187,6 +188,28 @@ std::vector<Case> dynamic_cases(MetresPerSecond speed, int count) {
     cases.emplace_back(numbered("dynamic", speed.si(), i, rocky), problem, std::move(field), std::move(islands));
   }
   return cases;
+}
+
+Case ensemble_case(MetresPerSecond speed, int member, int hours) {
+  Dice dice{0xA0761D6478BD642FULL};
+  for (int k = 0; k < 16; ++k) dice.roll();
+  const SeaPlan sea{620e3, 620e3, 60, 28e3, 62e3, hours > 0 ? 0.05 : 0.0, hours};
+  auto eddies = eddies_of(sea, dice);
+  Dice own{0xE7037ED1A0B428DBULL * static_cast<std::uint64_t>(member + 1)};
+  for (int k = 0; k < 16; ++k) own.roll();
+  if (member > 0)
+    for (auto& e : eddies) {
+      e.x += own.between(-30e3, 30e3);
+      e.y += own.between(-30e3, 30e3);
+      e.speed *= own.between(0.7, 1.3);
+    }
+  const auto middle = geo_point(kMiddleLat, kMiddleLon);
+  const auto from = offset_from(middle, 0.9 + kPi, kLongWay / 2);
+  auto problem =
+      problem_of(from, offset_from(from, geodesic(from, middle).departing.from_north().si(), kLongWay), speed);
+  problem.coast_margin = Metres{0};
+  problem.horizon_s = kT0 + planning::automatic_horizon(problem).count();
+  return {numbered("member", speed.si(), member, false), problem, field_of(sea, eddies)};
 }
 
 std::vector<Case> jet_cases() {

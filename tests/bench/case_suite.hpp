@@ -43,6 +43,10 @@ std::vector<Case> static_cases(MetresPerSecond speed, int count = 20);
 /// and the least distance left at the horizon counts (Thesis 5.5, 5.6.2). Every third lies among islands.
 std::vector<Case> dynamic_cases(MetresPerSecond speed, int count = 45);
 
+/// One member of an ensemble: the same way of 650 km and the same sixty eddies for all of them (28 to 62 km, as the static cases), each eddy
+/// of a member but the control up to 30 km off in east and north and 0.7 to 1.3 times as fast. `hours` 0: static; else hourly, and they drift.
+Case ensemble_case(MetresPerSecond speed, int member, int hours = 0);
+
 /// Eichhorn's meandering jet with U = 0.5 of its speed scale: starts (0, −3), (0, −1.5), (0, 0), (0, 1.5), (0, 3), goal (10, 0), in units
 /// of 20 km and V = 0.6 m/s. Starts and goal are ours; the paper gives none.
 std::vector<Case> jet_cases();

@@ -232,6 +232,46 @@ void print_row(bool hourly, double cell_m) {
                                        : "does not");
 }
 
+struct Named {
+  const char* name;
+  planning::Guidance guidance;
+};
+std::vector<Named> guidances() {
+  using planning::Heuristic;
+  using planning::Weighting;
+  std::vector<Named> all;
+  for (const auto& [name, heuristic] :
+       {std::pair{"straight_line", Heuristic::straight_line}, std::pair{"envelope", Heuristic::envelope}}) {
+    all.push_back({name, {heuristic, Weighting::none, 0}});
+    for (const double weight : {0.1, 0.5, 1.0}) {
+      all.push_back({name, {heuristic, Weighting::constant, weight}});
+      all.push_back({name, {heuristic, Weighting::by_depth, weight}});
+    }
+  }
+  return all;
+}
+
+/// Heuristics and weightings, at the default cell: the whole search, the heuristic's own making included.
+void print_guidances(bool hourly) {
+  const auto& s = setting(hourly);
+  auto p = problem(0.0);
+  double best = 0;
+  for (const auto& [name, guidance] : guidances()) {
+    p.guidance = guidance;
+    planning::CtsSearch found;
+    Took took;
+    for (int run = 0; run < 5; ++run)
+      best_of(took, [&] { return (found = planning::search(p, s.ocean, s.chart, {})).arrival_s; });
+    const double hours = (found.arrival_s - kT0) / 3600;
+    if (best == 0) best = hours;
+    constexpr std::array kWords{"", "static", "dynamic"};
+    std::printf("%-6s %-13s %-7s %3.1f: %6llu expansions, %6.1f ms processor | arrives after %6.2f h (%+.2f %%)\n",
+                hourly ? "hourly" : "static", name, kWords[static_cast<std::size_t>(guidance.weighting)],
+                guidance.weight, static_cast<unsigned long long>(found.statistics.expansions), 1e3 * took.processor,
+                hours, 100 * (hours / best - 1));
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -241,5 +281,6 @@ int main(int argc, char** argv) {
               setting(false).field.fastest().si());
   for (const bool hourly : {false, true})
     for (const double cell : {0.0, kTwentieth}) print_row(hourly, cell);
+  for (const bool hourly : {false, true}) print_guidances(hourly);
   return 0;
 }

@@ -264,3 +264,54 @@ TEST_CASE("sources that cannot be meant are reported where they stand") {
   CHECK(said("currents: [{files: [c.nc]}, {sources: [" + b + "]}]\n", "a second set of files"));
   CHECK(said("currents: {sources: [{name: a, file: [a.nc]}]}\n", "files"));  // the nearest key
 }
+
+TEST_CASE("an ensemble with a file to a member is read by the files of its control") {
+  const auto c = read("currents: {files: ['a_{member:2}.nc', 'b/{member}/*.nc'], ensemble: {members: 20, first: 1}}\n");
+  REQUIRE(c.ensemble);
+  CHECK(c.ensemble->members == 20);
+  CHECK(c.ensemble->first == 1);
+  CHECK(c.ensemble->files == Lines{"a_{member:2}.nc", "b/{member}/*.nc"});
+  CHECK(c.files == Lines{"a_01.nc", "b/1/*.nc"});
+  CHECK(c.ensemble->files_of(19) == Lines{"a_20.nc", "b/20/*.nc"});
+}
+
+TEST_CASE("an ensemble along a dimension of its files keeps their names") {
+  const auto c = read("currents: {files: [a.nc], ensemble: {members: 5}}\n");
+  REQUIRE(c.ensemble);
+  CHECK(*c.ensemble == mission::Ensemble{5, 0, {}});
+  CHECK(c.files == Lines{"a.nc"});
+  CHECK_FALSE(read("currents: {files: [a.nc]}\n").ensemble);
+}
+
+TEST_CASE("an ensemble in a list of fields is that of the files") {
+  const auto c = read("currents: [{files: ['m{member}.nc'], ensemble: {members: 3}}, {analytic: {" + kScales +
+                      ", kind: stuart}}]\n");
+  REQUIRE(c.ensemble);
+  CHECK(c.files == Lines{"m0.nc"});
+  CHECK(c.analytic.size() == 1);
+}
+
+TEST_CASE("an ensemble that cannot be meant is reported where it stands") {
+  const auto only = [](const std::string& currents) {
+    const auto said = errors(currents);
+    REQUIRE(said.size() == 1);
+    return said.front();
+  };
+  CHECK(only("currents: {files: ['a_{member}.nc']}\n") ==
+        "5:19 currents.files: {member} without an ensemble; allowed: ensemble: {members: N}");
+  CHECK(only("currents:\n  files: ['a_{member}.nc', b.nc]\n  ensemble: {members: 4}\n") ==
+        "6:28 currents.files[1]: no {member} in 'b.nc', others have one; allowed: {member} in each, or in none");
+  CHECK(only("currents:\n  files: ['a{member}*.nc']\n  ensemble: {members: 4}\n")
+            .find("6:11 currents.files[0]: {member} "
+                  "stands beside a wildcard") == 0);
+  CHECK(only("currents: {files: [a.nc], ensemble: {members: 4, first: 1}}\n").find("no {member} in files") !=
+        std::string::npos);
+  CHECK(only("currents: {files: [a.nc], ensemble: {first: 1}}\n").find("there is no ensemble; allowed: members") !=
+        std::string::npos);
+  CHECK(only("currents: {files: [a.nc], ensemble: {members: 0}}\n").find("currents.ensemble.members") !=
+        std::string::npos);
+  CHECK(only("currents: {sources: [{name: a, files: [a.nc]}], ensemble: {members: 2}}\n")
+            .find("currents.ensemble: there are no files") != std::string::npos);
+  CHECK(only("currents: {sources: [{name: a, files: ['a{member}.nc']}]}\n")
+            .find("currents.sources[0].files: {member} in a source") != std::string::npos);
+}

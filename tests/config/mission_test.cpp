@@ -44,7 +44,7 @@ approval: {mode: auto}
 start: {lat_deg: , lon_deg: , time: }
 vehicle: {horizontal_speed_m_per_s: 0.30, glide_angle_deg: 26, dive_depth_m: 200, climb_to_m: 20, current_correction: 1, local_frame_rotation_deg: }
 schedule: {stint_h: 4.0, surface_min: 15, first_stint_h: same}
-planning: {method: best, headings: 18, cell_km: auto, budget_s: 20, horizon_h: auto, seed: 1}
+planning: {method: best, headings: 18, cell_km: auto, budget_s: 20, horizon_h: auto, heuristic: envelope, weighting: none, weight: 0.1, seed: 1}
 safety: {coast: , min_distance_to_coast_m: 2000, bathymetry: , min_water_depth_m: , depth_margin_m: 20, keep_in: [], keep_out: []}
 list: {slot: 10, max_waypoints: 8, radius_m: auto, at_end: loop}
 window: {max_min: 15, dockzr_after_s: 120, emit_on: at_surface}
@@ -80,7 +80,7 @@ start: {lat_deg: -30, lon_deg: -179.5, time: 2026-11-25T06:00Z}
 vehicle: {horizontal_speed_m_per_s: 0.25, glide_angle_deg: 20, dive_depth_m: 900, climb_to_m: 5, current_correction: 0, local_frame_rotation_deg: -3.5}
 schedule: {stint_h: 8, surface_min: 20, first_stint_h: 2}
 currents: {files: [a.nc, b/*.nc], outside_time: cycle, interpolation: akima, variables: {east: uo, north: vo}, time_epoch: 2000-01-01}
-planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, astar: {neighbours: 24, radius: 2, grid: triangular}, tve: {sectors: 2, grid_km: 4}}
+planning: {method: cts-astar, headings: 36, cell_km: 2.5, budget_s: 5, horizon_h: 240, seed: 7, heuristic: straight_line, weighting: dynamic, weight: 0.25, astar: {neighbours: 24, radius: 2, grid: triangular}, tve: {sectors: 2, grid_km: 4}}
 safety: {coast: c.coast, min_distance_to_coast_m: 0, bathymetry: c.depth, min_water_depth_m: 120, depth_margin_m: 30, max_wpt_distance_m: 50000,
          keep_in: [[{lat_deg: -31, lon_deg: 178}, {lat_deg: -31, lon_deg: -178}, {lat_deg: -28, lon_deg: 180}]], keep_out: []}
 list: {slot: 0, max_waypoints: 1, radius_m: 150, at_end: wait}
@@ -115,6 +115,9 @@ after_goal: next leg-4
   CHECK(m.horizon == Seconds{240 * 3600});
   CHECK(m.seed == 7);
   CHECK(m.sector_grid == planning::SectorGrid{2, Metres{4000}});
+  CHECK(m.heuristic == planning::Heuristic::straight_line);
+  CHECK(m.weighting == planning::Weighting::by_depth);
+  CHECK(m.weight == 0.25);
   CHECK(m.lattice == planning::LatticeChoice{24, 2, planning::GridKind::triangular});
   CHECK(m.coast_file == "c.coast");
   CHECK(m.min_distance_to_coast == Metres{0});
@@ -201,6 +204,13 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
       {"planning: {headings: 73}\n", {"7:22 planning.headings: out of range; found 73; allowed: 4 to 72"}},
       {"planning: {cell_km: atuo}\n",
        {"7:21 planning.cell_km: not one of the words; found atuo; allowed: auto, a number; did you mean auto?"}},
+      {"planning: {heuristic: straight-line}\n",
+       {"7:23 planning.heuristic: not one of the words; found straight-line; allowed: straight_line, envelope; did you "
+        "mean straight_line?"}},
+      {"planning: {weighting: statik}\n",
+       {"7:23 planning.weighting: not one of the words; found statik; allowed: none, static, dynamic; did you mean "
+        "static?"}},
+      {"planning: {weight: -0.1}\n", {"7:20 planning.weight: out of range; found -0.1; allowed: 0 to 10"}},
       {"planning: {astar: {neighbours: 12}}\n",
        {"7:32 planning.astar.neighbours: no neighbourhood; found 12; allowed: 8, 16 or 24"}},
       {"planning: {astar: {grid: hexagonal}}\n",

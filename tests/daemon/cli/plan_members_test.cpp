@@ -1,5 +1,6 @@
 #include "daemon/cli/plan_members.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -23,6 +24,25 @@ data: lat = -2, 2 ; lon = 0, 8 ;
   u = 0.02, 0.02, 0.02, 0.02, 0.06, 0.06, 0.06, 0.06, -0.06, -0.06, -0.06, -0.06, -0.6, -0.6, -0.6, -0.6 ;
   v = 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 ;
 })";
+
+/// One of those oceans as a file of its own, with the reference time `cycle` if one is given.
+std::string one_member(double east, const std::string& cycle = {}) {
+  const auto u = std::to_string(east);
+  return R"(netcdf m {
+dimensions: time = 1 ; lat = 2 ; lon = 2 ;
+variables: double time(time) ; time:units = "hours since 2026-03-01" ;
+  double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;)" +
+         (cycle.empty()
+              ? std::string{}
+              : " double forecast_reference_time ; forecast_reference_time:standard_name = "
+                "\"forecast_reference_time\" ; forecast_reference_time:units = \"hours since 2026-03-01\" ;") +
+         R"(
+  float u(time, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ;
+  float v(time, lat, lon) ; v:units = "m/s" ; v:standard_name = "northward_sea_water_velocity" ;
+data: time = 0 ; lat = -2, 2 ; lon = 0, 8 ; v = 0, 0, 0, 0 ; u = )" +
+         u + ", " + u + ", " + u + ", " + u + " ; " +
+         (cycle.empty() ? "" : "forecast_reference_time = " + cycle + " ; ") + "}";
+}
 
 /// 44 km eastward along the equator.
 std::string mission(const std::string& currents) {
@@ -133,4 +153,68 @@ TEST_CASE("members that are not there and formulas are refused by name") {
       "analytic: {kind: constant, origin: {lat_deg: 0, lon_deg: 3}, length_scale_m: 10000, speed_scale_m_per_s: 0.1, "
       "params: {u: 1, v: 0}}");
   CHECK(desk.plan().code == 2);
+}
+
+TEST_CASE("a mission with an ensemble flies the plan of its control in all members unasked") {
+  Desk desk;
+  desk.write_mission("files: [" + (desk.folder / "e.nc") + "], ensemble: {members: 3}");
+  const auto said = desk.plan();
+  INFO(said.err);
+  CHECK(said.code == 0);
+  CHECK(said.json["ensemble"]["members"] == 3);
+  CHECK(said.json["ensemble"]["arrived"] == 3);
+  desk.options.members = 2;
+  CHECK(desk.plan().json["ensemble"]["members"] == 2);
+  desk.options.members = 0;
+  desk.options.member = 1;
+  CHECK_FALSE(desk.plan().json.contains("ensemble"));
+  desk.options.member = 3;
+  const auto beyond = desk.plan();
+  CHECK(beyond.code == 2);
+  CHECK(beyond.err.find("currents.ensemble has 3 members") != std::string::npos);
+}
+
+TEST_CASE("members in files of their own are what the same members along a dimension are") {
+  Desk desk;
+  const std::array<double, 4> currents{0.02, 0.06, -0.06, -0.6};
+  for (std::size_t k = 0; k < 4; ++k)
+    test::make_netcdf(desk.folder, "m0" + std::to_string(k + 1) + ".nc", one_member(currents[k]));
+  desk.write_mission("files: ['" + (desk.folder / "m{member:2}.nc") + "'], ensemble: {members: 4, first: 1}");
+  const auto own = desk.plan();
+  INFO(own.err);
+  CHECK(own.code == 0);
+  CHECK(own.json["travel_time_s"].get<double>() == about(travel_s(0.02)));
+  Desk together;
+  together.options.members = 4;
+  CHECK(own.json["ensemble"] == together.plan().json["ensemble"]);
+  desk.options.member = 1;
+  CHECK(desk.plan().json["travel_time_s"].get<double>() == about(travel_s(0.06)));
+}
+
+TEST_CASE("members without a file are named by their numbers with the line of the ensemble") {
+  Desk desk;
+  for (const auto* name : {"m1.nc", "m3.nc"}) test::make_netcdf(desk.folder, name, one_member(0.02));
+  desk.write_mission("files: ['" + (desk.folder / "m{member}.nc") + "'],\n  ensemble: {members: 4, first: 1}");
+  const auto said = desk.plan();
+  CHECK(said.code == 1);
+  CHECK(said.out.empty());
+  CHECK(
+      said.err.find("m.yaml:7:13: currents.ensemble: members without a file, by their numbers: 2, 4; nothing matches " +
+                    (desk.folder / "m2.nc")) != std::string::npos);
+}
+
+TEST_CASE("members of another cycle than the control are refused with the line of the ensemble") {
+  Desk desk;
+  test::make_netcdf(desk.folder, "m0.nc", one_member(0.02, "-24"));
+  test::make_netcdf(desk.folder, "m1.nc", one_member(0.02, "-24"));
+  test::make_netcdf(desk.folder, "m2.nc", one_member(0.02, "-12"));
+  desk.write_mission("files: ['" + (desk.folder / "m{member}.nc") + "'],\n  ensemble: {members: 2}");
+  auto said = desk.plan();
+  INFO(said.err);
+  CHECK(said.code == 0);
+  desk.write_mission("files: ['" + (desk.folder / "m{member}.nc") + "'],\n  ensemble: {members: 3}");
+  said = desk.plan();
+  CHECK(said.code == 1);
+  CHECK(said.err.find("m.yaml:7:13: currents.ensemble: members of different cycles: member 2 has the reference time "
+                      "2026-02-28T12:00:00Z, the one that is planned in 2026-02-28T00:00:00Z") != std::string::npos);
 }

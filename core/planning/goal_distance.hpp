@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/local_metric.hpp"
+#include "core/base/units.hpp"
+#include "core/vehicle/motion.hpp"
+
+namespace glidehelm::planning {
+
+/// How far the goal's centre is at least, and where it lies, from positions in radians: for kernels that ask millions of times.
+class GoalDistance {
+ public:
+  explicit GoalDistance(const vehicle::Disc& goal)
+      : lat_{goal.centre.lat.radians()}, lon_{goal.centre.lon.radians()}, cos_{std::cos(lat_)} {}
+
+  [[nodiscard]] double lat() const { return lat_; }
+  [[nodiscard]] double lon() const { return lon_; }
+
+  /// Metres; a lower bound of the geodesic distance: half the chord on a sphere of WGS84's smallest radius of curvature is
+  /// x = sin(angle/2), and all series are cut where they are below what they stand for.
+  [[nodiscard]] double least(double lat, double lon) const {
+    const double s = sine_at_most(0.5 * std::abs(lat_ - lat));
+    const double t =
+        sine_at_most(0.5 * std::abs(std::abs(lon_ - lon) <= kPi ? lon_ - lon : std::remainder(lon_ - lon, 2 * kPi)));
+    const double x2 = s * s + cosine_at_most(lat) * cos_ * t * t, x = std::sqrt(std::max(0.0, x2));
+    return 2 * kSmallestRadius * x * (1 + x2 * (1.0 / 6 + x2 * (3.0 / 40 + x2 * (15.0 / 336))));
+  }
+  /// Direction to the goal on the sphere, not normalised.
+  [[nodiscard]] Offset direction(double lat, double lon) const {
+    const double dlon = lon_ - lon;
+    return {std::sin(dlon) * cos_, std::cos(lat) * std::sin(lat_) - std::sin(lat) * cos_ * std::cos(dlon)};
+  }
+
+ private:
+  static constexpr double kSmallestRadius = 6'335'439.0;  // of curvature of WGS84
+
+  /// 0 ≤ x ≤ π/2; to 2e-4 there, to 1e-9 for x < 0.3.
+  static double sine_at_most(double x) {
+    const double x2 = x * x;
+    return x * (1 - x2 * (1.0 / 6 - x2 * (1.0 / 120 - x2 * (1.0 / 5040))));
+  }
+  /// |x| ≤ π/2, to 5e-7.
+  static double cosine_at_most(double x) {
+    const double x2 = x * x;
+    return 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800)))));
+  }
+
+  double lat_, lon_, cos_;
+};
+
+}  // namespace glidehelm::planning

@@ -266,7 +266,8 @@ TEST_CASE("sources that cannot be meant are reported where they stand") {
 }
 
 TEST_CASE("an ensemble with a file to a member is read by the files of its control") {
-  const auto c = read("currents: {files: ['a_{member:2}.nc', 'b/{member}/*.nc'], ensemble: {members: 20, first: 1}}\n");
+  const auto c =
+      read_currents("currents: {files: ['a_{member:2}.nc', 'b/{member}/*.nc'], ensemble: {members: 20, first: 1}}\n");
   REQUIRE(c.ensemble);
   CHECK(c.ensemble->members == 20);
   CHECK(c.ensemble->first == 1);
@@ -276,16 +277,16 @@ TEST_CASE("an ensemble with a file to a member is read by the files of its contr
 }
 
 TEST_CASE("an ensemble along a dimension of its files keeps their names") {
-  const auto c = read("currents: {files: [a.nc], ensemble: {members: 5}}\n");
+  const auto c = read_currents("currents: {files: [a.nc], ensemble: {members: 5}}\n");
   REQUIRE(c.ensemble);
   CHECK(*c.ensemble == mission::Ensemble{5, 0, {}});
   CHECK(c.files == Lines{"a.nc"});
-  CHECK_FALSE(read("currents: {files: [a.nc]}\n").ensemble);
+  CHECK_FALSE(read_currents("currents: {files: [a.nc]}\n").ensemble);
 }
 
 TEST_CASE("an ensemble in a list of fields is that of the files") {
-  const auto c = read("currents: [{files: ['m{member}.nc'], ensemble: {members: 3}}, {analytic: {" + kScales +
-                      ", kind: stuart}}]\n");
+  const auto c = read_currents("currents: [{files: ['m{member}.nc'], ensemble: {members: 3}}, {analytic: {" + kScales +
+                               ", kind: stuart}}]\n");
   REQUIRE(c.ensemble);
   CHECK(c.files == Lines{"m0.nc"});
   CHECK(c.analytic.size() == 1);
@@ -293,7 +294,7 @@ TEST_CASE("an ensemble in a list of fields is that of the files") {
 
 TEST_CASE("an ensemble that cannot be meant is reported where it stands") {
   const auto only = [](const std::string& currents) {
-    const auto said = errors(currents);
+    const auto said = current_errors(currents);
     REQUIRE(said.size() == 1);
     return said.front();
   };

@@ -5,24 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "config/analytic_field.hpp"
 #include "config/yaml_reader/fields.hpp"
 #include "core/mission/mission.hpp"
 
 /// The key `currents` of a mission: files, analytic fields, or a list of both.
 namespace glidehelm::config {
-
-/// Parameters of every analytic kind; `parameters_of` says which belong to one.
-struct AnalyticParams {
-  std::optional<double> u, v, omega, rate, a, epsilon, b0, theta, k, c;
-  std::optional<bool> dynamic;
-  std::vector<std::vector<double>> list;
-};
-
-/// `analytic:` as it stands in the file.
-struct AnalyticDraft : mission::AnalyticSpec {
-  std::optional<double> lat_deg, lon_deg;
-  AnalyticParams given;
-};
 
 /// Files and how they are read.
 struct FilesDraft {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <optional>
@@ -38,9 +39,9 @@ struct Coverage {
     const double lat = p.lat.radians();
     if (lat < south || lat > north) return false;
     double lon = p.lon.radians();
-    while (lon < west) lon += 2 * kPi;
-    while (lon - 2 * kPi >= west) lon -= 2 * kPi;
-    return lon <= east;
+    // In one step, not turn by turn: a lane that left the globe would keep such a loop for ever.
+    if (lon < west || lon >= west + 2 * kPi) lon -= 2 * kPi * std::floor((lon - west) / (2 * kPi));
+    return lon <= east;  // neither NaN nor an infinite longitude is inside
   }
   friend bool operator==(const Coverage&, const Coverage&) = default;
 };

@@ -90,7 +90,7 @@ TEST_CASE("stepping lanes through sources asks for no memory") {
   const auto field = two_models(Interpolation::linear);
   std::mt19937_64 random{26};
   std::uniform_real_distribution<double> lat{38, 42}, lon{3, 7};
-  Lanes lanes;
+  Lanes lanes{};
   lanes.count = Lanes::kMax;
   for (std::size_t k = 0; k < Lanes::kMax; ++k) {
     lanes.lat[k] = lat(random) * kPi / 180;

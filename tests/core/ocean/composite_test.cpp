@@ -247,7 +247,7 @@ TEST_CASE("the kernel and the samples move lanes alike: inside a source, across 
   for (const bool with_coast : {false, true}) {
     const auto field = with_coast ? nested(coast, stream) : nested(eddies, stream);
     for (int round = 0; round < 20; ++round) {
-      Lanes lanes;
+      Lanes lanes{};
       lanes.count = Lanes::kMax;
       for (std::size_t k = 0; k < Lanes::kMax; ++k) {
         lanes.lat[k] = between(38, 42) * kPi / 180;

@@ -66,7 +66,7 @@ TEST_CASE("lanes are moved as samples say, to the second order of the step") {
   const CorrectedField field{forecast, c};
   const FieldRef ref{field};
   const auto flown = [&](bool by_kernel, double dt) {
-    Lanes lanes;
+    Lanes lanes{};
     lanes.count = 2;
     for (std::size_t k = 0; k < 2; ++k) {
       lanes.lat[k] = c.at.lat.radians();

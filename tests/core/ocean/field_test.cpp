@@ -1,6 +1,8 @@
 #include "core/ocean/field.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
 #include "tests/support/fields.hpp"
 
@@ -25,6 +27,24 @@ TEST_CASE("a coverage across the antimeridian contains both of its sides") {
   CHECK_FALSE(box.contains(geo_point(0, 0)));
 }
 
+TEST_CASE("a longitude many turns away is wound back at once, and one that is no number is nowhere") {
+  const auto at = [](double lon) { return GeoPoint::from_kernel(0, lon); };
+  Coverage box;
+  box.west = 0.1;
+  box.east = 0.5;
+  CHECK(box.contains(at(0.1)));
+  CHECK(box.contains(at(0.5)));
+  for (const double turns : {-1000.0, -1.0, 1.0, 1000.0}) {
+    CHECK(box.contains(at(0.3 + 2 * kPi * turns)));
+    CHECK_FALSE(box.contains(at(0.6 + 2 * kPi * turns)));
+    CHECK_FALSE(box.contains(at(0.05 + 2 * kPi * turns)));
+  }
+  // A turn is lost in the rounding here, so that turn by turn there would be no end: what is asked is an answer.
+  for (const double lost : {1e300, -1e300}) CHECK(box.contains(at(lost)) == box.contains(at(lost)));
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const double none : {inf, -inf, std::nan("")}) CHECK_FALSE(box.contains(at(none)));
+}
+
 TEST_CASE("a FieldRef answers as the field it looks at") {
   const test::Uniform field{0.3, -0.4};
   const FieldRef ref{field};
@@ -37,7 +57,7 @@ TEST_CASE("a FieldRef answers as the field it looks at") {
 TEST_CASE("a field without a kernel moves lanes by its samples, and loses those that have none") {
   test::FromFunction field{[](double, double, double) { return std::pair{0.5, 0.0}; }, 0.5, {}};
   field.box.east = 0.0;
-  Lanes lanes;
+  Lanes lanes{};
   lanes.count = 2;
   lanes.lat = {};
   lanes.lon = {};

@@ -16,7 +16,7 @@ namespace {
 Lanes lanes_in(double south, double north, double west, double east, std::uint64_t seed, int count = Lanes::kMax) {
   std::mt19937_64 random{seed};
   const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>{a, b}(random); };
-  Lanes lanes;
+  Lanes lanes{};
   lanes.count = count;
   for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k) {
     lanes.lat[k] = between(south, north) * kPi / 180;

@@ -22,6 +22,8 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, 
   const auto offer = [&](Plan plan) {
     if (best && !better_than(plan, *best)) return;
     best = std::move(plan);
+    best->statistics = purse.spent();
+    best->cut_at = purse.cut_at();
     if (better) better(*best);
   };
   const DirectToGoal direct;

@@ -44,6 +44,10 @@ TEST_CASE("the stages are told as they come, each better than the one before, th
   REQUIRE(told.size() >= 2);
   for (std::size_t i = 1; i + 1 < told.size(); ++i) CHECK(planning::better_than(told[i], told[i - 1]));
   CHECK(told.front().method == "direct");
+  // Each says what had been spent until it was found, not what its own stage cost.
+  for (std::size_t i = 1; i < told.size(); ++i)
+    CHECK((told[i].statistics.expansions > 0 &&
+           told[i].statistics.current_evaluations >= told[i - 1].statistics.current_evaluations));
   CHECK(told.back() == *best);
 }
 

@@ -61,14 +61,14 @@ std::string side(Radians turn) {
 
 Expected<std::vector<EachPlan>, Trouble> plan_in_members(const Case& c, const std::optional<planning::Plan>& control,
                                                          int members, bool progress, world::World& world,
-                                                         std::ostream& err) {
+                                                         std::ostream& err, unsigned threads) {
   const auto count = static_cast<std::size_t>(members);
   std::vector<planning::Plan> plans(count);
   std::vector<std::optional<Trouble>> troubles(count);
   plans[0] = control ? *control : nothing_planned(c.request.problem, "the control has no plan");
   world::Turns outside;  // members are read, let go and told of one at a time
   std::size_t done = 1;
-  world::for_each_index(count - 1, 0, [&](std::size_t index) {
+  world::for_each_index(count - 1, threads, [&](std::size_t index) {
     const auto k = index + 1;
     std::shared_ptr<const daemon::OceanSource> member;
     outside.take([&] {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/utc.hpp"
 #include "core/ocean/corrected.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
@@ -115,6 +116,21 @@ mission::Candidate queued(const mission::QueuedFile& file, const mission::Planni
   return candidate;
 }
 
+/// What a proof over [from_s, to_s] assumes of times that the forecast does not have; nothing where it has them all.
+std::string assumed_of_time(const OceanSource& ocean, double from_s, double to_s) {
+  const auto c = ocean.forecast.ocean().dive.coverage();
+  if (c.first_s <= from_s && to_s <= c.last_s) return "";
+  const auto policy = ocean.sources.empty() ? ocean.options.outside_time : ocean.sources.front().options.outside_time;
+  const bool one = std::all_of(ocean.sources.begin(), ocean.sources.end(),
+                               [&](const auto& source) { return source.options.outside_time == policy; });
+  const char* how = !one                                  ? "each source as its outside_time says"
+                    : policy == ocean::OutsideTime::hold  ? "held before and after (outside_time: hold)"
+                    : policy == ocean::OutsideTime::cycle ? "repeated as a tide before and after (outside_time: cycle)"
+                                                          : "and none before and after (outside_time: forbid)";
+  return ", with the currents of " + utc_text(instant_at(c.first_s)) + " to " + utc_text(instant_at(c.last_s)) + " " +
+         how;
+}
+
 }  // namespace
 
 double horizon_of(const mission::PlanningRequest& request) {
@@ -177,7 +193,10 @@ Expected<planning::Bound, planning::PlanFailure> certificate(const mission::Plan
   const PlanningOcean waters{ocean, request};
   planning::BoundSettings settings;
   if (!std::isnan(known_arrival_s)) settings.earlier_than_s = known_arrival_s;
-  return planning::lower_bound(problem, waters.ocean(), chart, {kCertificateWork, expired}, settings);
+  auto bound = planning::lower_bound(problem, waters.ocean(), chart, {kCertificateWork, expired}, settings);
+  if (bound && bound->kind == planning::Bound::Kind::unreachable)
+    bound->reason += assumed_of_time(ocean, problem.start.fix_s, problem.horizon_s);
+  return bound;
 }
 
 }  // namespace glidehelm::daemon

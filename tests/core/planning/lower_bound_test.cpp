@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <functional>
 
 #include "core/planning/registry.hpp"
 #include "tests/support/planning.hpp"
@@ -63,6 +64,18 @@ struct WithMask {
     const auto m = LocalMetric::at(0);
     const double x = p.lon.radians() * m.parallel_radius, y = p.lat.radians() * m.meridian_radius;
     if (x > west && x < east && y > south && y < north) return unexpected(ocean::NoCurrent::land);
+    return ocean::Sample{};
+  }
+  [[nodiscard]] ocean::Coverage coverage() const { return test::box_around(geo_point(0, 0), 1.0); }
+  [[nodiscard]] MetresPerSecond fastest() const { return MetresPerSecond{0}; }
+};
+
+/// Still water and a ring of the field's own land, four kilometres wide, about (20 km, 0).
+struct WithAtoll {
+  [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth, double) const {
+    const auto m = LocalMetric::at(0);
+    const double r = std::hypot(p.lon.radians() * m.parallel_radius - 20e3, p.lat.radians() * m.meridian_radius);
+    if (r > 6e3 && r < 10e3) return unexpected(ocean::NoCurrent::land);
     return ocean::Sample{};
   }
   [[nodiscard]] ocean::Coverage coverage() const { return test::box_around(geo_point(0, 0), 1.0); }
@@ -222,6 +235,38 @@ TEST_CASE("a goal in a closed lagoon is proven unreachable") {
   const auto bound = planning::lower_bound(p, {field, field}, chart, {}, {.spacing = Metres{600}});
   REQUIRE(bound);
   CHECK(bound->kind == Bound::Kind::unreachable);
+}
+
+TEST_CASE("a goal in a lagoon that only the field closes is proven unreachable") {
+  const WithAtoll water;
+  auto p = submerged(geo_point(0, 0), test::on_equator(20e3, 0));
+  p.horizon_s = test::kT0 + 3 * 20e3 / test::kSpeed;  // time to come round to the far side: 10 km + π·10 km
+  const auto bound = planning::lower_bound(p, {water, water}, chart::Chart{}, {}, {.spacing = Metres{600}});
+  REQUIRE(bound);
+  CHECK(bound->kind == Bound::Kind::unreachable);
+}
+
+TEST_CASE(
+    "up a channel the goal is unreachable where all of it runs faster than the glider, and reached along a slow bank") {
+  // Banks at 5 km to both sides over 80 km; the way is 20 km upstream.
+  const auto chart =
+      walls({rectangle("north bank", -40e3, 5e3, 40e3, 8e3), rectangle("south bank", -40e3, -8e3, 40e3, -5e3)});
+  const auto decide = [&](const std::function<double(double y)>& current, double y) {
+    const auto field = plane_field([&](double, double north, double) { return std::pair{-current(north), 0.0}; }, 0.6);
+    auto p = submerged(test::on_equator(0, y), test::on_equator(20e3, y));
+    p.horizon_s = test::kT0 + 180e3;
+    const auto bound = planning::lower_bound(p, {field, field}, chart, {}, {.spacing = Metres{400}});
+    REQUIRE(bound);
+    return *bound;
+  };
+  CHECK(decide([](double) { return 0.35; }, 0).kind == Bound::Kind::unreachable);
+  // From 0.45 m/s at the north bank down to 0.15 m/s at the south bank: nobody comes up faster than 0.3 − 0.15 m/s, and who goes
+  // straight up half a kilometre off the south bank, where it runs 0.165 m/s, arrives after 19.9 km at 0.135 m/s.
+  const auto bound = decide([](double y) { return 0.3 + 0.03e-3 * std::clamp(y, -5e3, 5e3); }, -4.5e3);
+  REQUIRE(bound.kind == Bound::Kind::arrival);
+  INFO("bound " << bound.travel_s << " s, error " << bound.error_s << " s");
+  CHECK(bound.travel_s <= 19.9e3 / 0.135);
+  CHECK(bound.travel_s + 2 * bound.error_s >= 19.9e3 / 0.15);
 }
 
 TEST_CASE("a horizon that is too short is proven so and one just long enough is not") {

@@ -41,6 +41,13 @@ std::vector<Run> runs_of(const std::vector<std::size_t>& source) {
   return runs;
 }
 
+/// How far apart neighbours along each axis lie in what is read: the last axis runs fastest.
+std::vector<std::size_t> strides_of(const std::vector<std::size_t>& count) {
+  std::vector<std::size_t> strides(count.size(), 1);
+  for (std::size_t d = count.size(); d-- > 1;) strides[d - 1] = strides[d] * count[d];
+  return strides;
+}
+
 }  // namespace
 
 Result<Box> read_box(const NetcdfFile& file, const Axes& axes, const Units& units, const ReadOptions& options,
@@ -91,7 +98,7 @@ Result<Told> read_values(const NetcdfFile& file, const Variable& variable, const
   const std::size_t rank = variable.dimensions.size();
   const auto [low_lat, high_lat] = std::minmax_element(in.lats.source.begin(), in.lats.source.end());
   const std::size_t depths = in.depths.values.size(), rows = in.lats.values.size(), columns = in.lons.values.size();
-  std::vector<std::size_t> start(rank, 0), count(rank, 1), stride(rank, 1);
+  std::vector<std::size_t> start(rank, 0), count(rank, 1);
   for (const auto& run : runs_of(in.lons.source)) {
     start[*axes.latitude.position] = *low_lat;
     count[*axes.latitude.position] = *high_lat - *low_lat + 1;
@@ -102,7 +109,7 @@ Result<Told> read_values(const NetcdfFile& file, const Variable& variable, const
       if (in.has_time && axes.time->position) start[*axes.time->position] = in.times.source[t];
       const auto stored = file.read(variable, start, count);
       if (!stored) return unexpected(stored.error());
-      for (std::size_t d = rank, step = 1; d-- > 0; step *= count[d]) stride[d] = step;
+      const auto stride = strides_of(count);
       const std::size_t depth_stride = in.has_depth && axes.depth->position ? stride[*axes.depth->position] : 0;
       const std::size_t lat_stride = stride[*axes.latitude.position], lon_stride = stride[*axes.longitude.position];
       for (std::size_t z = 0; z < depths; ++z)

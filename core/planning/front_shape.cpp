@@ -53,9 +53,14 @@ bool Front::spare(const Marker& last, const Marker& m, const Marker& next) const
   const auto rests = [](const Marker& x) { return x.stuck || x.idle; };
   const auto before = from_to(last, m), after = from_to(m, next);
   const double length = before.length() + after.length();
-  if (last.coast && m.coast && next.coast)
-    return length < spacing_ &&
-           segment_distance(-before.east, -before.north, after.east, after.north) < kStraight * spacing_;
+  if (last.coast && m.coast && next.coast) {
+    const double off = kStraight * spacing_;
+    if (length < spacing_ && segment_distance(-before.east, -before.north, after.east, after.north) < off) return true;
+    // Along the coast and back on the same way: there is nothing between the two.
+    const Offset both{before.east + after.east, before.north + after.north};
+    return segment_distance(before.east, before.north, both.east, both.north) < off ||
+           segment_distance(-after.east, -after.north, -both.east, -both.north) < off;
+  }
   if (last.coast || m.coast || next.coast) return false;
   if (rests(last) && rests(m) && rests(next)) return length < spacing_;
   return !rests(last) && !rests(m) && !rests(next) && length < 0.6 * spacing_near(m.lat, m.lon) &&

@@ -57,6 +57,7 @@ class Run {
   [[nodiscard]] bool met_shallows() const { return front_.met_shallows(); }
   [[nodiscard]] bool met_dry() const { return front_.met_dry(); }
   [[nodiscard]] std::size_t evaluations() const { return front_.evaluations(); }
+  [[nodiscard]] std::size_t most_markers() const { return most_markers_; }
   [[nodiscard]] std::vector<Isochrone> isochrones() { return std::move(isochrones_); }
 
  private:
@@ -85,6 +86,7 @@ class Run {
       if (speed > 0) {
         front_.refine();
         front_.prune(problem_.start.fix_s + t);
+        most_markers_ = std::max(most_markers_, front_.markers().size());
       }
     }
     now_ = begin + seconds;
@@ -106,6 +108,7 @@ class Run {
   Envelope envelope_;
   Front front_;
   double now_{};
+  std::size_t most_markers_{};
   std::vector<Isochrone> isochrones_;
 };
 
@@ -213,6 +216,7 @@ class Certificate {
     const auto end = one.go(rest, isochrones);
     bound_.statistics.expansions += one.steps();
     bound_.statistics.current_evaluations += one.evaluations();
+    bound_.most_markers = std::max(bound_.most_markers, one.most_markers());
     met_coast_ = met_coast_ || one.met_coast();
     met_shallows_ = met_shallows_ || one.met_shallows();
     met_dry_ = met_dry_ || one.met_dry();

@@ -27,7 +27,8 @@ struct Bound {
   double error_s{};    ///< what was subtracted
   std::string reason;  ///< in words, unless it is an arrival
   std::vector<Isochrone> isochrones;
-  Statistics statistics;  ///< `expansions`: steps of markers
+  Statistics statistics;       ///< `expansions`: steps of markers
+  std::size_t most_markers{};  ///< that a front had after a step
 };
 
 struct BoundSettings {

@@ -12,6 +12,10 @@ namespace {
 constexpr double kDifference = 5.0;  // metres: the normal is a difference of clearances over that
 constexpr double kNear = 100.0;      // metres: nothing farther off the border is brought onto it
 
+constexpr int kTry = 12;  // strides
+constexpr double kHeld =
+    2 * WallWalk::kShortestStride;  // metres: a walker that comes no farther in kTry strides is held by the current
+
 void shift(double& lat, double& lon, double east, double north) {
   const double middle = lat + 0.5 * north / LocalMetric::at(lat).meridian_radius;
   const auto metric = LocalMetric::at(middle);
@@ -76,14 +80,20 @@ WallWalk::End WallWalk::walk(Marker& m, Way way, const Marker* towards, ocean::F
                ? kPi
                : std::abs(std::atan2(a.east * b.north - a.north * b.east, a.east * b.east + a.north * b.north));
   };
-  double bent = 0;
+  double bent = 0, reach = kLongestStride;
+  Marker tried_from = m;
+  int strides = 0;
   for (double t = 0; t < seconds - 1e-6;) {
+    if (++strides % kTry == 0) {
+      if (local_offset(m.lat, m.lon, tried_from.lat, tried_from.lon).length() < kHeld) return End::under_way;
+      tried_from = m;
+    }
     if (!here.found) return End::no_border;
-    double longest = kLongestStride;
+    double longest = reach;
     if (towards != nullptr) {
       const double distance = local_offset(m.lat, m.lon, towards->lat, towards->lon).length();
       if (distance < kMeet) return End::met;
-      longest = std::clamp(0.5 * distance, kShortestStride, kLongestStride);
+      longest = std::clamp(0.5 * distance, kShortestStride, reach);
     }
     const auto first = motion_at(m.lat, m.lon, here, t);
     if (!first) return End::no_water;
@@ -115,14 +125,18 @@ WallWalk::End WallWalk::walk(Marker& m, Way way, const Marker* towards, ocean::F
     }
     shift(lat, lon, -end.above * end.east, -end.above * end.north);
     if (chart_.bathymetry() != nullptr && !chart_.segment_is_clear(m.lat, m.lon, lat, lon, 0)) return End::no_water;
+    reach = std::clamp(2 * dt * std::abs(first->along), kShortestStride, kLongestStride);
     here = end;
     m.lat = lat;
     m.lon = lon;
     t += dt;
+    const bool was_behind = m.behind > 0;
+    m.behind = std::max(0.0, m.behind - dt * there->along);
     if (speed <= 0) continue;
     const auto now = heading(here, *there);
     // To the land's side.
-    bent += left * std::atan2(m.east * now.north - m.north * now.east, m.east * now.east + m.north * now.north);
+    if (!was_behind && m.behind == 0)
+      bent += left * std::atan2(m.east * now.north - m.north * now.east, m.east * now.east + m.north * now.north);
     bent = std::max(0.0, bent);
     m.east = now.east;
     m.north = now.north;

@@ -18,7 +18,8 @@ namespace glidehelm::planning {
 /// current takes it off, it stays.
 ///
 /// Where the border bends away from the water the way can leave it on every tangent: a marker is sent off each `kSend` of the
-/// bend. At a sharp corner they are a fan.
+/// bend. At a sharp corner they are a fan. Ground that a current has carried the walker back over sends nothing a second time: what
+/// was sent off there is in the water, and between it and the walker the front is refined.
 ///
 /// The border is the level line of the clearance, followed by the midpoint rule and brought back to the level after each
 /// stride; ν is a difference of clearances. Strides are halved until the border turns by less than `kMostBend` in half of one, or are

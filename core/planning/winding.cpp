@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 
 #include "core/base/local_metric.hpp"
@@ -81,20 +82,20 @@ class Rows {
       north = std::max(north, row_of(m.lat));
     }
     south_ = std::floor(south);
-    edges_.resize(static_cast<std::size_t>(std::floor(north) - south_) + 1);
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-      const double a = row_of(polygon[i].lat) - south_, b = row_of(after(i).lat) - south_;
-      const auto last = static_cast<std::size_t>(std::max(a, b));
-      for (auto row = static_cast<std::size_t>(std::min(a, b)); row <= last; ++row)
-        edges_[row].push_back(static_cast<std::uint32_t>(i));
-    }
+    first_.assign(static_cast<std::size_t>(std::floor(north) - south_) + 2, 0);
+    for_rows([this](std::size_t row, std::size_t) { ++first_[row + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    edges_.resize(first_.back());
+    auto next = first_;
+    for_rows([&](std::size_t row, std::size_t edge) { edges_[next[row]++] = static_cast<std::uint32_t>(edge); });
   }
   [[nodiscard]] bool winds_about(double lat, double lon) const {
     const double row = row_of(lat) - south_;
-    if (!(row >= 0 && row < static_cast<double>(edges_.size()))) return false;
+    if (!(row >= 0 && row < static_cast<double>(first_.size() - 1))) return false;
     int winds = 0;
-    for (const auto i : edges_[static_cast<std::size_t>(row)]) {
-      const Marker &a = polygon_[i], &b = after(i);
+    const auto k = static_cast<std::size_t>(row);
+    for (auto e = first_[k]; e < first_[k + 1]; ++e) {
+      const Marker &a = polygon_[edges_[e]], &b = after(edges_[e]);
       if ((a.lat <= lat) == (b.lat <= lat)) continue;
       if (a.lon + (b.lon - a.lon) * (lat - a.lat) / (b.lat - a.lat) < lon) winds += b.lat > a.lat ? 1 : -1;
     }
@@ -105,11 +106,21 @@ class Rows {
   /// Narrow rows: beside coasts edges are short.
   [[nodiscard]] double row_of(double lat) const { return 8 * (lat - lattice_.lat) * lattice_.per_lat; }
   [[nodiscard]] const Marker& after(std::size_t i) const { return polygon_[i + 1 == polygon_.size() ? 0 : i + 1]; }
+  /// Each row with each edge that touches it, edges in order.
+  template <class Touch>
+  void for_rows(const Touch& touch) const {
+    for (std::size_t i = 0; i < polygon_.size(); ++i) {
+      const double a = row_of(polygon_[i].lat) - south_, b = row_of(after(i).lat) - south_;
+      const auto last = static_cast<std::size_t>(std::max(a, b));
+      for (auto row = static_cast<std::size_t>(std::min(a, b)); row <= last; ++row) touch(row, i);
+    }
+  }
 
   const std::vector<Marker>& polygon_;
   Squares lattice_;
   double south_{};
-  std::vector<std::vector<std::uint32_t>> edges_;
+  std::vector<std::size_t> first_;    ///< of each row's edges in `edges_`, and one past the last
+  std::vector<std::uint32_t> edges_;  ///< by row, by number
 };
 
 /// Beside a coast: see deep_inside.

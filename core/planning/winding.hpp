@@ -17,6 +17,7 @@ struct Marker {
   bool forward{}, back{};   ///< walks along the coast towards the next marker, towards the one before
   bool done{};              ///< of a coast: lies deep inside, and walks no more
   bool fanned{};            ///< its wall has sent headings to all sides
+  double behind{};          ///< metres that a current has carried a walker back along the coast
   double left{};            ///< seconds of the step that were left at the wall
   bool idle{};              ///< can be of no more use, and stays
   bool joins{};             ///< the edge to the next marker closes a gap inside the reached set: no front

@@ -71,6 +71,62 @@ TEST_CASE("a walk adds the current along the wall and crabs against the current 
   CHECK(sent.empty());
 }
 
+TEST_CASE("a corner that a walker is carried back over sends nothing a second time") {
+  const auto chart = island({test::on_equator(-4e3, -4e3), test::on_equator(4e3, -4e3), test::on_equator(4e3, 4e3),
+                             test::on_equator(-4e3, 4e3)});
+  WallWalk walk{chart, 3e3};
+  const test::Uniform still{0, 0};
+  auto m = at(test::on_equator(0, 7e3));
+  REQUIRE(walk.settle(m));
+  std::vector<Marker> sent;
+  const auto go = [&](const test::Uniform& current, double seconds) {
+    sent.clear();
+    CHECK(walk.walk(m, WallWalk::Way::forward, nullptr, current, kFast, 0, seconds, sent) == WallWalk::End::under_way);
+  };
+  const double arc = 0.5 * kPi * (3e3 + WallWalk::kOff);
+  go(still, (4e3 + arc + 2e3) / kFast);  // round the north-western corner and 2 km down the west side
+  CHECK(sent.size() == 7);
+  CHECK(m.behind == 0);
+  // On the west side 0.6 m/s onto the wall let nothing be steered along it, and 0.3 m/s carry it back; on the arc and on the north side,
+  // where 0.3 m/s off the wall leave √(0.4² − 0.3²) along it, it is carried back too.
+  go({0.6, 0.3}, 30e3);
+  CHECK(sent.empty());
+  CHECK(m.lat * LocalMetric::at(0).meridian_radius == Approx(7e3 + WallWalk::kOff).margin(1.0));
+  CHECK(m.behind > arc + 2e3);
+  // To the place where it was turned back: the chords of its strides are up to 0.2 %^2/24 shorter than arcs, and the corner is 2 km away.
+  go(still, m.behind / kFast);
+  CHECK(sent.empty());
+  go(still, (4e3 + arc + 2e3) / kFast);  // the next corner is new ground
+  CHECK(sent.size() == 7);
+}
+
+TEST_CASE("a walker that the current holds in the corner of two walls stays there") {
+  // Land in the south and in the west. In the south 0.5 m/s carry it west, in the west 0.5 m/s carry it back south: both more than it
+  // can steer against.
+  chart::ChartSources sources;
+  sources.keep_out.push_back({"south",
+                              {test::on_equator(-20e3, -20e3), test::on_equator(20e3, -20e3), test::on_equator(20e3, 0),
+                               test::on_equator(-20e3, 0)}});
+  sources.keep_out.push_back({"west",
+                              {test::on_equator(-20e3, -20e3), test::on_equator(0, -20e3), test::on_equator(0, 20e3),
+                               test::on_equator(-20e3, 20e3)}});
+  const chart::Chart chart{std::move(sources)};
+  WallWalk walk{chart, 1e3};
+  const test::Uniform into{-0.5, -0.5};
+  auto m = at(test::on_equator(4e3, 1e3));
+  REQUIRE(walk.settle(m));
+  std::vector<Marker> sent;
+  CHECK(walk.walk(m, WallWalk::Way::forward, nullptr, into, kFast, 0, 36e3, sent) == WallWalk::End::under_way);
+  // Two metres off walls grown by 1 km, and the two shortest strides within which it is held.
+  const double metres = LocalMetric::at(0).meridian_radius;
+  CHECK(m.lat * metres == Approx(1e3 + WallWalk::kOff).margin(2 * WallWalk::kShortestStride));
+  CHECK(m.lon * LocalMetric::at(0).parallel_radius ==
+        Approx(1e3 + WallWalk::kOff).margin(2 * WallWalk::kShortestStride));
+  CHECK(sent.empty());  // the way from one wall to the other and back is no bend
+  // To and fro for all the 28 000 s that are left would be 3500 shortest strides, of two samples each.
+  CHECK(walk.evaluations() < 350);
+}
+
 TEST_CASE("two that walk towards each other on one wall meet") {
   const auto chart = island({test::on_equator(0, -60e3), test::on_equator(20e3, -60e3), test::on_equator(20e3, 60e3),
                              test::on_equator(0, 60e3)});

@@ -166,11 +166,12 @@ Fields<MissionDraft> planning_fields() {
       &MissionDraft::horizon, kHour, above(0, 8784), "auto");
   f.word({"heuristic",
           "least time left that `cts-astar` and `abs-cts-astar` reckon with: `straight_line` at full speed, `envelope` "
-          "on the "
-          "dive schedule; the stronger, the less work"},
+          "on the dive schedule, `cost_to_go` on the dive schedule through the currents that there are; the stronger, "
+          "the less work"},
          &MissionDraft::heuristic,
          std::vector<std::pair<std::string, planning::Heuristic>>{{"straight_line", planning::Heuristic::straight_line},
-                                                                  {"envelope", planning::Heuristic::envelope}});
+                                                                  {"envelope", planning::Heuristic::envelope},
+                                                                  {"cost_to_go", planning::Heuristic::cost_to_go}});
   f.word({"weighting",
           "what the heuristic is multiplied by, for less work: `static` by 1 + `weight`, `dynamic` by less and less "
           "towards "

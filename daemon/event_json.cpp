@@ -56,7 +56,7 @@ void members(Departure& d, F&& f) {
 inline nlohmann::json write(GridKind k) { return static_cast<int>(k); }
 inline void read(const nlohmann::json& j, GridKind& k) { values::read_enum(j, k, GridKind::triangular); }
 inline nlohmann::json write(Heuristic h) { return static_cast<int>(h); }
-inline void read(const nlohmann::json& j, Heuristic& h) { values::read_enum(j, h, Heuristic::envelope); }
+inline void read(const nlohmann::json& j, Heuristic& h) { values::read_enum(j, h, Heuristic::cost_to_go); }
 inline nlohmann::json write(Weighting w) { return static_cast<int>(w); }
 inline void read(const nlohmann::json& j, Weighting& w) { values::read_enum(j, w, Weighting::by_depth); }
 /// Null: the least time; else the epoch second of the least distance.

@@ -83,6 +83,8 @@ class FieldRef {
   void advance(Lanes& lanes, double t_s, double dt) const { table_->advance(object_, lanes, t_s, dt); }
 
   [[nodiscard]] Coverage coverage() const { return table_->coverage(object_); }
+  /// True when both look at the same object.
+  [[nodiscard]] bool is(const FieldRef& other) const { return object_ == other.object_ && table_ == other.table_; }
   /// An upper bound of the speed of any current that `sample` can return: what makes heuristics admissible.
   [[nodiscard]] MetresPerSecond fastest() const { return table_->fastest(object_); }
 

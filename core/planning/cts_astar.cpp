@@ -7,6 +7,7 @@
 
 #include "core/planning/flight.hpp"
 #include "core/planning/searched_plan.hpp"
+#include "core/planning/to_go.hpp"
 
 namespace glidehelm::planning {
 
@@ -83,11 +84,14 @@ Expected<Plan, PlanFailure> CtsAStar::plan(const Problem& problem, Members membe
 
 Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& asked,
                                         Members members, const chart::Chart& chart, const Budget& budget,
-                                        const std::function<void(const Plan&)>& better) {
+                                        const std::function<void(const Plan&)>& better, SharedToGo* shared) {
   const Problem problem = within_objective(asked);
+  SharedToGo own{problem, members, chart};
+  SharedToGo& to_go = shared ? *shared : own;
   return plan_by_search(problem, members, chart, budget, better, [&](const ocean::Ocean& ocean) -> Search {
     return [&](Purse& purse, Metres allowance) {
       CtsSettings settings;
+      settings.to_go = &to_go.get(purse);
       settings.allowance = allowance;
       settings.sampling = sampling;
       auto found = search_far(problem, ocean, chart, purse, settings);

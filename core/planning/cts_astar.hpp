@@ -7,6 +7,9 @@
 
 namespace glidehelm::planning {
 
+class ToGo;
+class SharedToGo;
+
 /// CTS-A*: A* over surfacings at constant time (Thesis 4.4, Algorithm 4.2, with the errata).
 ///
 /// Idea: instead of asking which heading leads to a neighbouring grid node, fly a stint on each of M headings and see where
@@ -91,10 +94,11 @@ class CtsAStar final : public Planner {
                                                  const std::function<void(const Plan&)>& better) const override;
 };
 
-/// What `CtsAStar::plan` does, for either way of sampling headings; `method` is the name that the plan gets.
+/// What `CtsAStar::plan` does, for either way of sampling headings; `method` is the name that the plan gets. `shared`: of the same problem within
+/// its objective, for other searches too; null: its own.
 Expected<Plan, PlanFailure> plan_by_cts(const std::string& method, HeadingSampling sampling, const Problem& problem,
                                         Members members, const chart::Chart& chart, const Budget& budget,
-                                        const std::function<void(const Plan&)>& better);
+                                        const std::function<void(const Plan&)>& better, SharedToGo* shared = nullptr);
 
 /// What the search itself found, before it is flown: for `CtsAStar::plan`, tests and benchmarks.
 struct CtsSearch {
@@ -122,6 +126,7 @@ struct CtsSettings {
   HeadingSampling sampling{HeadingSampling::uniform};
   /// As near to the goal as can be: labels from which it cannot be reached in time are expanded as well.
   bool nearest{};
+  const ToGo* to_go{};  ///< of the same problem, made before; null: the search makes its own
 };
 /// One search at one cell size.
 CtsSearch search(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, const Budget& budget,

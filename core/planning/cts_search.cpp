@@ -54,7 +54,8 @@ class LabelSearch {
         horizon_{within_objective(problem).horizon_s - problem.start.fix_s},
         at_stint_{wants_least_distance(problem) ? stints_within(within_objective(problem)) : 0},
         reach_{reach_of(problem, ocean)},
-        to_go_{problem, ocean},
+        own_to_go_{settings.to_go ? std::nullopt : std::optional<ToGo>{std::in_place, problem, ocean, chart}},
+        to_go_{settings.to_go ? *settings.to_go : *own_to_go_},
         anticipated_{std::max(1.0, distance(problem.start.fix, goal_.centre).si() / (speed_ * stint_))},
         grid_{make_grid(settings.cell.si() > 0 ? settings.cell : cell_of(problem))},
         best_of_cell_(grid_.cells(), -1),
@@ -101,7 +102,7 @@ class LabelSearch {
     parent_distance_ = goal_distance_.least(start.lat, start.lon);
     nearest_distance_ = layered() ? kNever : parent_distance_;
     const double to_go = distance(problem_.start.fix, goal_.centre).si() - goal_.radius.si();
-    hopeless_ = hopeless_ || to_go_.from_fix(parent_distance_) > horizon_;
+    hopeless_ = hopeless_ || to_go_.from_fix(start.lat, start.lon, parent_distance_) > horizon_;
     add(start, false);  // belongs to no cell: a stint may come back to where it began
     heap_.push_back({0.0, 0});
     if (to_go <= 0) arrive(CtsLanes::Entry{0, 0}, 0, 0);
@@ -154,6 +155,7 @@ class LabelSearch {
   [[nodiscard]] Statistics statistics() const {
     Statistics all = lanes_.statistics();
     all.expansions = expansions_;
+    if (own_to_go_) all.current_evaluations += own_to_go_->current_evaluations();
     return all;
   }
   [[nodiscard]] CtsSearch::Stopped stopped() const {
@@ -269,7 +271,7 @@ class LabelSearch {
       best = -1;  // of a layer that is done
     }
     const double d = goal_distance_.least(place.lat, place.lon), g = surfaced(stints);
-    const double h = layered() ? d * kOrderInLayer : to_go_.from_surfacing(d);
+    const double h = layered() ? d * kOrderInLayer : to_go_.from_surfacing(place.lat, place.lon, d);
     const double f = layered() ? g + h : g + problem_.guidance.factor(stints, anticipated_) * h;
     if (f >= best_arrival_) return;
     const Label label{place.lat,
@@ -346,7 +348,8 @@ class LabelSearch {
   double speed_, stint_, horizon_;
   int at_stint_;  ///< stints of a way of least distance; 0 under MinTime
   Envelope reach_;
-  ToGo to_go_;
+  std::optional<ToGo> own_to_go_;
+  const ToGo& to_go_;
   double anticipated_;  ///< stints of the way through still water
   SearchGrid grid_;
   std::vector<std::int32_t> best_of_cell_;  ///< label of each cell, −1 none

@@ -6,10 +6,11 @@
 namespace glidehelm::planning {
 
 /// h(n) of CTS-A*: what the time from a surfacing to the goal cannot be less than (to_go.hpp). From the weakest to the strongest;
-/// each is admissible and consistent.
+/// each is admissible and consistent (the last one as far as its lattice resolves the currents: docs/decisions/032).
 enum class Heuristic : std::uint8_t {
   straight_line,  ///< Thesis 4.1: the distance over U + |c|max
-  envelope        ///< the same on the dive schedule: dives at U + |c|max, drifts at |c|max of the surface
+  envelope,       ///< the same on the dive schedule: dives at U + |c|max, drifts at |c|max of the surface
+  cost_to_go      ///< the least time through the water that there is, on the dive schedule (cost_to_go.hpp)
 };
 
 /// What h(n) is multiplied by in f(n) = g(n) + (1 + ε·ω)·h(n).
@@ -25,7 +26,7 @@ enum class Weighting : std::uint8_t {
 /// found an ancestor of it is open, whose f is at most g + (1 + ε)·h ≤ (1 + ε)·(g + h), and g + h is not later than that arrival.
 /// Both ω lie in [0, 1]; more is not needed of them. What the weighted f says of the horizon is no proof: that is told by g + h.
 struct Guidance {
-  Heuristic heuristic{Heuristic::envelope};
+  Heuristic heuristic{Heuristic::cost_to_go};
   Weighting weighting{Weighting::none};
   double weight{0.1};  ///< ε ≥ 0
 

@@ -1,6 +1,5 @@
 #include "core/planning/ladder.hpp"
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "core/planning/flight.hpp"
 #include "core/planning/purse.hpp"
 #include "core/planning/refined_cts.hpp"
+#include "core/planning/to_go.hpp"
 
 namespace glidehelm::planning {
 
@@ -26,22 +26,22 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, 
     best->cut_at = purse.cut_at();
     if (better) better(*best);
   };
-  const DirectToGoal direct;
-  const CtsAStar cts;
-  for (const Planner* stage : std::array<const Planner*, 2>{&direct, &cts}) {
-    auto answer = stage->plan(problem, members, chart, purse.rest(), {});
+  const auto take = [&](Expected<Plan, PlanFailure> answer) {
     if (!answer) {
       failure = answer.error();
-      continue;
+      return;
     }
     purse.take(answer->statistics, answer->cut_at != 0);
     found.push_back(*answer);
     offer(std::move(answer).value());
-  }
+  };
+  SharedToGo to_go{problem, members, chart};
+  take(DirectToGoal{}.plan(problem, members, chart, purse.rest(), {}));
+  take(plan_by_cts("cts-astar", HeadingSampling::uniform, problem, members, chart, purse.rest(), {}, &to_go));
   if (!best) return unexpected(*failure);
   // A straight way that does not arrive where the search does has nothing to give.
   if (best->reaches_goal() && found.size() > 1 && !found.front().reaches_goal()) found.erase(found.begin());
-  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse));
+  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse, to_go));
   best->statistics = purse.spent();
   best->cut_at = purse.cut_at();
   if (better) better(*best);

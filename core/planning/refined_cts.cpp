@@ -11,6 +11,7 @@
 #include "core/planning/path_keeping.hpp"
 #include "core/planning/purse.hpp"
 #include "core/planning/refinement.hpp"
+#include "core/planning/to_go.hpp"
 
 namespace glidehelm::planning {
 
@@ -48,8 +49,8 @@ std::vector<Heading> with_one_more(std::span<const Heading> headings, GeoPoint f
 /// Refinement and flights under one purse and one chart.
 class Polish {
  public:
-  Polish(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse)
-      : problem_{problem}, ocean_{ocean}, chart_{chart}, purse_{purse} {}
+  Polish(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Purse& purse, SharedToGo& to_go)
+      : problem_{problem}, ocean_{ocean}, chart_{chart}, purse_{purse}, to_go_{to_go} {}
 
   [[nodiscard]] Refined polish(const std::vector<Heading>& headings) { return polish(headings, problem_); }
 
@@ -74,8 +75,9 @@ class Polish {
   [[nodiscard]] CtsSearch search_variant(const Variant& variant) {
     Problem other = problem_;
     other.headings = static_cast<int>(std::lround(variant.headings * problem_.headings));
-    auto found =
-        search(other, ocean_, chart_, purse_.rest(), {allowance(problem_), variant.cell * cell_of(problem_), 1e18});
+    CtsSettings settings{allowance(problem_), variant.cell * cell_of(problem_), 1e18};
+    settings.to_go = &to_go_.get(purse_);
+    auto found = search(other, ocean_, chart_, purse_.rest(), settings);
     purse_.take(found.statistics, found.cut_at != 0);
     return found;
   }
@@ -115,13 +117,14 @@ class Polish {
   const ocean::Ocean& ocean_;
   const chart::Chart& chart_;
   Purse& purse_;
+  SharedToGo& to_go_;
 };
 
 }  // namespace
 
 Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-             Purse& purse) {
-  Polish polish{problem, ocean, chart, purse};
+             Purse& purse, SharedToGo& to_go) {
+  Polish polish{problem, ocean, chart, purse, to_go};
   Plan best = plans.front();
   for (const auto& plan : plans.subspan(1))
     if (better_than(plan, best)) best = plan;
@@ -151,12 +154,13 @@ Expected<Plan, PlanFailure> RefinedCts::plan(const Problem& asked, Members membe
                                              const Budget& budget,
                                              const std::function<void(const Plan&)>& better) const {
   const Problem problem = within_objective(asked);
-  auto searched = CtsAStar{}.plan(problem, members, chart, budget, better);
+  SharedToGo to_go{problem, members, chart};
+  auto searched = plan_by_cts("cts-astar", HeadingSampling::uniform, problem, members, chart, budget, better, &to_go);
   if (!searched) return searched;
   Purse purse{budget};
   purse.take(searched->statistics, searched->cut_at != 0);
   if (purse.is_empty()) return searched;
-  auto plan = refined({&*searched, 1}, problem, members.front(), chart, purse);
+  auto plan = refined({&*searched, 1}, problem, members.front(), chart, purse, to_go);
   plan.statistics = purse.spent();
   plan.cut_at = purse.cut_at();
   if (better) better(plan);

@@ -7,6 +7,8 @@
 
 namespace glidehelm::planning {
 
+class SharedToGo;
+
 /// CTS-A* with its plan polished (refinement.hpp): what service emits.
 ///
 /// The search is good at choosing the valley (which side of an eddy or an island) and loses 0.5 to 4 % to its cells and
@@ -29,8 +31,8 @@ class RefinedCts final : public Planner {
 
 /// The best of the plans (at least one), of what refinement makes of each, and, where one reaches the goal, of the refined ways of
 /// other searches, within what the purse still holds. A plan that was polished is called after the one that it began as:
-/// "cts-astar-refined", "direct-refined".
+/// "cts-astar-refined", "direct-refined". `to_go`: of the same problem.
 Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-             Purse& purse);
+             Purse& purse, SharedToGo& to_go);
 
 }  // namespace glidehelm::planning

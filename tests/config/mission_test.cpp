@@ -44,7 +44,7 @@ approval: {mode: auto}
 start: {lat_deg: , lon_deg: , time: }
 vehicle: {horizontal_speed_m_per_s: 0.30, glide_angle_deg: 26, dive_depth_m: 200, climb_to_m: 20, current_correction: 1, local_frame_rotation_deg: }
 schedule: {stint_h: 4.0, surface_min: 15, first_stint_h: same}
-planning: {method: best, headings: 18, cell_km: auto, budget_s: 20, horizon_h: auto, heuristic: envelope, weighting: none, weight: 0.1, seed: 1}
+planning: {method: best, headings: 18, cell_km: auto, budget_s: 20, horizon_h: auto, heuristic: cost_to_go, weighting: none, weight: 0.1, seed: 1}
 safety: {coast: , min_distance_to_coast_m: 2000, bathymetry: , min_water_depth_m: , depth_margin_m: 20, keep_in: [], keep_out: []}
 list: {slot: 10, max_waypoints: 8, radius_m: auto, at_end: loop}
 window: {max_min: 15, dockzr_after_s: 120, emit_on: at_surface}
@@ -205,7 +205,8 @@ TEST_CASE("every mistake of a mission is named with its line and column") {
       {"planning: {cell_km: atuo}\n",
        {"7:21 planning.cell_km: not one of the words; found atuo; allowed: auto, a number; did you mean auto?"}},
       {"planning: {heuristic: straight-line}\n",
-       {"7:23 planning.heuristic: not one of the words; found straight-line; allowed: straight_line, envelope; did you "
+       {"7:23 planning.heuristic: not one of the words; found straight-line; allowed: straight_line, envelope, "
+        "cost_to_go; did you "
         "mean straight_line?"}},
       {"planning: {weighting: statik}\n",
        {"7:23 planning.weighting: not one of the words; found statik; allowed: none, static, dynamic; did you mean "

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/planning/flight.hpp"
+#include "core/planning/to_go.hpp"
 #include "tests/core/planning/exhaustive.hpp"
 
 using namespace glidehelm;
@@ -230,7 +231,11 @@ TEST_CASE("memory and work of a long way are bounded by the grid, 32 evaluations
   const auto field = *ocean::AnalyticField::make(spec, instant_at(test::kT0), test::box_around(spec.origin, 4));
   auto p = test::problem_between(spec.origin, destination(spec.origin, Bearing{degrees(50)}, Metres{200e3}), 2000);
   p.headings = 18;
-  const auto found = planning::search(p, {field, field}, chart::Chart{}, {});
+  // Made before, as a planner does: what it evaluates is not the stints'.
+  const planning::ToGo to_go{p, {field, field}, chart::Chart{}};
+  planning::CtsSettings settings;
+  settings.to_go = &to_go;
+  const auto found = planning::search(p, {field, field}, chart::Chart{}, {}, settings);
   CHECK(found.exhausted);
   CHECK_FALSE(std::isnan(found.arrival_s));
   CHECK(found.step_s == 3600);

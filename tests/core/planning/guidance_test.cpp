@@ -17,7 +17,8 @@ using planning::Weighting;
 
 namespace {
 
-constexpr std::array kHeuristics{Heuristic::straight_line, Heuristic::envelope};  // weaker ones first
+constexpr std::array kHeuristics{Heuristic::straight_line, Heuristic::envelope,
+                                 Heuristic::cost_to_go};  // weaker ones first
 
 /// A search whose labels have cells of their own: 100 m wide, where a stint is 8.6 km long. Then CTS-A* is A* on a tree, and what
 /// theory says of that holds to the bit.
@@ -61,10 +62,9 @@ TEST_CASE("from many places no heuristic says more than the front of all that ca
       double before = 0;
       for (const auto heuristic : kHeuristics) {
         p.guidance.heuristic = heuristic;
-        const planning::ToGo to_go{p, ocean};
-        const double distance =
-            planning::GoalDistance{goal}.least(p.start.fix.lat.radians(), p.start.fix.lon.radians());
-        const double h = to_go.from_fix(distance);
+        const planning::ToGo to_go{p, ocean, chart::Chart{}};
+        const double lat = p.start.fix.lat.radians(), lon = p.start.fix.lon.radians();
+        const double h = to_go.from_fix(lat, lon, planning::GoalDistance{goal}.least(lat, lon));
         INFO(sea.name << " " << static_cast<int>(heuristic) << ": " << h << " s, the front " << bound.travel_s);
         CHECK(h <= bound.travel_s + 2 * bound.error_s);
         CHECK(h >= before * (1 - 1e-12));  // and each is at least the weaker one
@@ -78,15 +78,15 @@ TEST_CASE("the straight line is the distance at full speed, drifting or diving")
   auto p = test::problem_between(geo_point(0, 0), geo_point(0, 1));
   for (const auto& [wind, speed] : {std::pair{below, 0.4}, std::pair{surface, 0.6}}) {
     p.guidance.heuristic = Heuristic::straight_line;
-    const planning::ToGo straight{p, {below, wind}};
+    const planning::ToGo straight{p, {below, wind}, chart::Chart{}};
     p.guidance.heuristic = Heuristic::envelope;
-    const planning::ToGo envelope{p, {below, wind}};
+    const planning::ToGo envelope{p, {below, wind}, chart::Chart{}};
     for (double d = 600; d < 200e3; d *= 1.3) {
-      CHECK(straight.from_surfacing(d) == Approx((d - 500) / speed));
-      CHECK(straight.from_fix(d) == Approx((d - 500) / speed));
-      CHECK(envelope.from_surfacing(d) >= straight.from_surfacing(d) * (1 - 1e-12));
+      CHECK(straight.from_surfacing(0, 0, d) == Approx((d - 500) / speed));
+      CHECK(straight.from_fix(0, 0, d) == Approx((d - 500) / speed));
+      CHECK(envelope.from_surfacing(0, 0, d) >= straight.from_surfacing(0, 0, d) * (1 - 1e-12));
     }
-    CHECK(straight.from_surfacing(499) == 0);
+    CHECK(straight.from_surfacing(0, 0, 499) == 0);
   }
 }
 
@@ -182,7 +182,7 @@ TEST_CASE("drawn headings are led and weighted as uniform ones") {
     auto p = sea.problem;
     p.cell = Metres{1000};
     const auto adaptive = planning::HeadingSampling::adaptive;
-    const auto best = found(p, sea, {}, adaptive),
+    const auto best = found(p, sea, {Heuristic::envelope}, adaptive),
                quick = found(p, sea, {Heuristic::envelope, Weighting::constant, 0.5}, adaptive);
     CHECK_FALSE(std::isnan(quick.arrival_s));
     plain += best.statistics.expansions;

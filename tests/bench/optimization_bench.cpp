@@ -17,7 +17,7 @@
 //    percentages, sqp (the Thesis's fmincon) over the kernel, so that less than 100 % is worse;
 //  - optimization on its own problem, the dynamic cases: distance left at the horizon less that of best.
 //
-//   optimization_bench [STATIC [DYNAMIC]]     cases of each (default 10 and, at each speed, 9)
+//   optimization_bench [STATIC [DYNAMIC]]     cases of each (default 10 and, at each speed, 45)
 
 using namespace glidehelm;
 
@@ -71,34 +71,40 @@ void print_head(const char* title, const std::vector<Column>& columns) {
   std::printf("\n");
 }
 
-/// A row for each case, then their mean. Of `relative` the last column is the reference: its value over the column's, in per cent. NaN: "-",
-/// and the case is left out of that column's mean.
+/// The value of a column's case; of `relative` that of the last column, the reference, over it, in per cent.
+double entry(const std::vector<Column>& columns, std::size_t column, std::size_t i, Value value, bool relative) {
+  const double mine = value(columns[column].results[i]);
+  return relative ? 100 * value(columns.back().results[i]) / mine : mine;
+}
+
+void print_entry(double v, int digits, bool relative) {
+  if (std::isnan(v)) {
+    std::printf(" %14s", "-");
+    return;
+  }
+  const double unit = std::pow(10.0, digits);
+  const double rounded = std::round(v * unit) / unit + 0.0;  // no minus before a nought
+  std::printf(" %*.*f%s", relative ? 12 : 14, digits, rounded, relative ? " %" : "");
+}
+
+/// A row for each case, then the mean over the cases in which every column has a value; NaN: "-".
 void print(const char* title, const std::vector<suite::Case>& cases, const std::vector<Column>& columns, Value value,
            int digits, bool relative) {
   print_head(title, columns);
   std::vector<double> sums(columns.size());
-  std::vector<int> counts(columns.size());
-  const char* unit = relative ? " %" : "";
-  const auto row = [&](double v) {
-    if (std::isnan(v))
-      std::printf(" %14s", "-");
-    else
-      std::printf(" %*.*f%s", relative ? 12 : 14, digits, v, unit);
-  };
+  int complete = 0;
   for (std::size_t i = 0; i < cases.size(); ++i) {
+    std::vector<double> row;
+    for (std::size_t k = 0; k < columns.size(); ++k) row.push_back(entry(columns, k, i, value, relative));
     std::printf("%-26s", cases[i].name.c_str());
-    for (std::size_t k = 0; k < columns.size(); ++k) {
-      const double mine = value(columns[k].results[i]);
-      const double v = relative ? 100 * value(columns.back().results[i]) / mine : mine;
-      row(v);
-      if (std::isnan(v)) continue;
-      sums[k] += v;
-      ++counts[k];
-    }
+    for (const double v : row) print_entry(v, digits, relative);
     std::printf("\n");
+    if (std::any_of(row.begin(), row.end(), [](double v) { return std::isnan(v); })) continue;
+    for (std::size_t k = 0; k < columns.size(); ++k) sums[k] += row[k];
+    ++complete;
   }
-  std::printf("%-26s", "mean");
-  for (std::size_t k = 0; k < columns.size(); ++k) row(counts[k] > 0 ? sums[k] / counts[k] : std::nan(""));
+  std::printf("mean of %-18d", complete);
+  for (const double sum : sums) print_entry(complete > 0 ? sum / complete : std::nan(""), digits, relative);
   std::printf("\n");
 }
 
@@ -154,7 +160,7 @@ void least_distance(double speed, int count) {
 
 int main(int argc, char** argv) {
   const int still = std::clamp(argc > 1 ? std::atoi(argv[1]) : 10, 0, 20);
-  const int moving = std::clamp(argc > 2 ? std::atoi(argv[2]) : 9, 0, 45);
+  const int moving = std::clamp(argc > 2 ? std::atoi(argv[2]) : 45, 0, 45);
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   if (still > 0) least_time(still);
   if (moving > 0)

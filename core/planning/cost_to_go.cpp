@@ -35,8 +35,8 @@ TriangleLattice lattice_around(const Problem& problem, const ocean::Coverage& co
   // Not beyond where a parallel is of use as an axis. Three sides beyond the field all is dry, so that the rim is of no use to anybody.
   const double lowest = std::max(-kMostLatitude, coverage.south), highest = std::min(kMostLatitude, coverage.north);
   const bool all_round = coverage.east - coverage.west >= 2 * kPi;
-  const double eastward =
-      std::remainder(lon - 0.5 * (coverage.west + coverage.east), 2 * kPi);  // from the field's middle
+  const double from_middle = std::remainder(lon - 0.5 * (coverage.west + coverage.east), 2 * kPi);
+  const double eastward = all_round ? 0.0 : from_middle;  // in the field
   const double half = all_round ? kPi : 0.5 * (coverage.east - coverage.west);
   const auto reach = [&](double wanted, double limit, double radius) {
     return std::min(std::max(0.0, wanted) + room, std::max(0.0, limit) * radius + 3 * side);

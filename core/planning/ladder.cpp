@@ -41,7 +41,7 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, 
   if (!best) return unexpected(*failure);
   // A straight way that does not arrive where the search does has nothing to give.
   if (best->reaches_goal() && found.size() > 1 && !found.front().reaches_goal()) found.erase(found.begin());
-  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse, to_go));
+  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse, to_go).plan);
   best->statistics = purse.spent();
   best->cut_at = purse.cut_at();
   if (better) better(*best);

@@ -14,10 +14,10 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr double kMuch = 1.1;       // times the horizon: V of what is not reached
-constexpr double kLevel = 5e-3;     // share by which a triangle may be too steep before it is lowered
-constexpr double kWorthWhile = 30;  // seconds by which V of a node must shrink to be looked at again
-constexpr double kSwept = 0.8;
+constexpr double kMuch = 1.1;        // times the horizon: V of what is not reached
+constexpr double kLevel = 5e-3;      // share by which a triangle may be too steep before it is lowered
+constexpr double kWorthWhile = 30;   // seconds by which V of a node must shrink to be looked at again
+constexpr double kSwept = 0.8;       // of the speed through water: a current that is hardly gone against
 constexpr std::size_t kRound = 5;    // looks at each triangle after which twice as much is allowed
 constexpr int kPlacesOnCircle = 64;  // V between two of them is higher by 0.12 % of radius times slope at most
 

@@ -122,15 +122,17 @@ class Polish {
 
 }  // namespace
 
-Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-             Purse& purse, SharedToGo& to_go) {
+RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean,
+                    const chart::Chart& chart, Purse& purse, SharedToGo& to_go) {
   Polish polish{problem, ocean, chart, purse, to_go};
-  Plan best = plans.front();
+  RefinedPlan answer{plans.front(), std::nan("")};
+  Plan& best = answer.plan;
   for (const auto& plan : plans.subspan(1))
     if (better_than(plan, best)) best = plan;
   const auto reason = best.reason;
   const auto offer = [&](const Refined& way, const std::string& method, double until_s) {
     if (way.headings.empty()) return;
+    if (!std::isnan(way.arrival_s) && !(way.arrival_s >= answer.held_arrival_s)) answer.held_arrival_s = way.arrival_s;
     auto flown = plan_from(method, polish.fly(way, until_s), problem, {});
     if (!flown.reaches_goal()) flown.reason = reason;
     if (better_than(flown, best)) best = std::move(flown);
@@ -147,7 +149,7 @@ Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::O
     const auto found = polish.search_variant(variant);
     if (!std::isnan(found.arrival_s)) offer(polish.polish(found.headings), "cts-astar-refined", problem.horizon_s);
   }
-  return best;
+  return answer;
 }
 
 Expected<Plan, PlanFailure> RefinedCts::plan(const Problem& asked, Members members, const chart::Chart& chart,
@@ -160,7 +162,7 @@ Expected<Plan, PlanFailure> RefinedCts::plan(const Problem& asked, Members membe
   Purse purse{budget};
   purse.take(searched->statistics, searched->cut_at != 0);
   if (purse.is_empty()) return searched;
-  auto plan = refined({&*searched, 1}, problem, members.front(), chart, purse, to_go);
+  auto plan = refined({&*searched, 1}, problem, members.front(), chart, purse, to_go).plan;
   plan.statistics = purse.spent();
   plan.cut_at = purse.cut_at();
   if (better) better(plan);

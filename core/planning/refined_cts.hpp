@@ -32,7 +32,13 @@ class RefinedCts final : public Planner {
 /// The best of the plans (at least one), of what refinement makes of each, and, where one reaches the goal, of the refined ways of
 /// other searches, within what the purse still holds. A plan that was polished is called after the one that it began as:
 /// "cts-astar-refined", "direct-refined". `to_go`: of the same problem.
-Plan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart,
-             Purse& purse, SharedToGo& to_go);
+struct RefinedPlan {
+  Plan plan;
+  /// Epoch second at which the earliest of the refined ways arrives as it was polished, each heading held for its whole stint; NaN when none
+  /// does. The plan is later by what the glider's law loses in the last minutes of each stint, when it steers to the next point of its list.
+  double held_arrival_s{};
+};
+RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean,
+                    const chart::Chart& chart, Purse& purse, SharedToGo& to_go);
 
 }  // namespace glidehelm::planning

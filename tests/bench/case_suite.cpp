@@ -7,6 +7,7 @@
 
 #include "core/planning/flight.hpp"
 #include "tests/support/fields.hpp"
+#include "tests/support/planning.hpp"
 #include "tests/support/random_sea.hpp"
 
 namespace glidehelm::suite {
@@ -240,6 +241,12 @@ std::vector<Case> jet_cases() {
     std::snprintf(name, sizeof name, "jet (0, %.1f)", y);
     cases.emplace_back(name, problem, *field);
   }
+  return cases;
+}
+
+std::vector<Case> analytic_cases() {
+  std::vector<Case> cases;
+  for (auto& sea : test::analytic_seas()) cases.emplace_back(sea.name, sea.problem, sea.field);
   return cases;
 }
 

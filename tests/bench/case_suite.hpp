@@ -51,4 +51,7 @@ Case ensemble_case(MetresPerSecond speed, int member, int hours = 0);
 /// of 20 km and V = 0.6 m/s. Starts and goal are ours; the paper gives none.
 std::vector<Case> jet_cases();
 
+/// The analytic fields of the tests (tests/support/planning.hpp), 31 km each.
+std::vector<Case> analytic_cases();
+
 }  // namespace glidehelm::suite

@@ -6,6 +6,7 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/optimization.hpp"
 #include "core/planning/purse.hpp"
 #include "core/planning/refined_cts.hpp"
 #include "core/planning/to_go.hpp"
@@ -41,7 +42,12 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, 
   if (!best) return unexpected(*failure);
   // A straight way that does not arrive where the search does has nothing to give.
   if (best->reaches_goal() && found.size() > 1 && !found.front().reaches_goal()) found.erase(found.begin());
-  if (!purse.is_empty()) offer(refined(found, problem, members.front(), chart, purse, to_go).plan);
+  if (!purse.is_empty()) {
+    auto polished = refined(found, problem, members.front(), chart, purse, to_go);
+    offer(std::move(polished.plan));
+    if (polished.in_doubt && !wants_least_distance(problem) && !purse.is_empty())
+      take(IterativeOptimization{}.plan(problem, members, chart, purse.rest(), {}));
+  }
   best->statistics = purse.spent();
   best->cut_at = purse.cut_at();
   if (better) better(*best);

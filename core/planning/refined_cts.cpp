@@ -144,11 +144,21 @@ RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const o
         plan.reaches_goal() || plan.stints.empty() ? problem.horizon_s : plan.stints.back().surface_s + 1.0;
     offer(polish.polish(headings_of(plan, problem, ocean, chart)), plan.method + "-refined", until_s);
   }
+  std::vector<double> others;  // epoch seconds of arrivals, NaN without
   for (const auto& variant : kVariants) {
     if (purse.is_empty()) break;
     const auto found = polish.search_variant(variant);
-    if (!std::isnan(found.arrival_s)) offer(polish.polish(found.headings), "cts-astar-refined", problem.horizon_s);
+    double arrival_s = std::nan("");
+    if (!std::isnan(found.arrival_s)) {
+      const auto way = polish.polish(found.headings);
+      offer(way, "cts-astar-refined", problem.horizon_s);
+      arrival_s = way.arrival_s;
+    }
+    others.push_back(arrival_s);
   }
+  const double least = answer.held_arrival_s - problem.start.fix_s;
+  for (const double arrival_s : others)
+    answer.in_doubt = answer.in_doubt || !(arrival_s - problem.start.fix_s <= (1 + kSameValley) * least);
   return answer;
 }
 

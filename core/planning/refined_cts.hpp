@@ -37,7 +37,11 @@ struct RefinedPlan {
   /// Epoch second at which the earliest of the refined ways arrives as it was polished, each heading held for its whole stint; NaN when none
   /// does. The plan is later by what the glider's law loses in the last minutes of each stint, when it steers to the next point of its list.
   double held_arrival_s{};
+  /// The other searches did not all end in the same valley: one does not arrive, or arrives, refined, more than `kSameValley` later or earlier
+  /// than the best. Then yet another valley may be better still.
+  bool in_doubt{};
 };
+inline constexpr double kSameValley = 0.01;  ///< of the travel time
 RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean,
                     const chart::Chart& chart, Purse& purse, SharedToGo& to_go);
 

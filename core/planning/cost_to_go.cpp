@@ -10,7 +10,7 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr int kLeastSides = 40, kMostSides = 60;  // on the way; between them, sides of half a stint
+constexpr int kLeastSides = 24, kMostSides = 60;  // on the way; between them, sides as long as a stint
 constexpr double kMostLatitude = 85 * kPi / 180;
 constexpr double kRoom = 0.35, kFarRoom = 1.5;  // times the way
 constexpr double kFarSide = 3;                  // times the side
@@ -20,9 +20,9 @@ double way_of(const Problem& problem) {
   return std::max(distance(problem.start.fix, goal.centre).si(), 2 * goal.radius.si());
 }
 double side_of(const Problem& problem) {
-  const double half_stint = 1.0 * (problem.glider.horizontal_speed * problem.schedule.stint).si();
+  const double stint = (problem.glider.horizontal_speed * problem.schedule.stint).si();
   const double way = way_of(problem);
-  return std::clamp(half_stint, way / kMostSides, way / kLeastSides);
+  return std::clamp(stint, way / kMostSides, way / kLeastSides);
 }
 
 /// Start and goal with `ways` times the way to all sides, or what there is of the field.

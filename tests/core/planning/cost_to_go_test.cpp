@@ -109,7 +109,7 @@ TEST_CASE("a cost to go leads round a wall, and not into a closed lagoon") {
   const auto lagoon = without(
       {{-20e3, -20e3, -8e3, 20e3}, {8e3, -20e3, 20e3, 20e3}, {-20e3, -20e3, 20e3, -8e3}, {-20e3, 8e3, 20e3, 20e3}});
   const CostToGo closed{p, {still, still}, lagoon};
-  // The fine lattice sees that it is closed. The coarse one has sides of 7.5 km and no triangle within the banks, so what is left is what it
+  // The fine lattice sees that it is closed. The coarse one has sides of 12.5 km and no triangle within the banks, so what is left is what it
   // costs to go round beyond the fine one.
   CHECK(left_at(closed, -kWay, 0) > 1.2 * (kWay - kRadius) / test::kSpeed);
   CHECK(left_at(closed, 4e3, 0) <= (4e3 - kRadius) / test::kSpeed * closed.dive_rate());

@@ -48,6 +48,13 @@ struct Cost {
   [[nodiscard]] Cost mean() const { return {size / seas, seconds / seas, expansions / seas, evaluations / seas, seas}; }
 };
 
+struct Led {
+  planning::Heuristic by;
+  const char* name;
+};
+constexpr std::array kLed{Led{planning::Heuristic::envelope, "led by envelope"},
+                          Led{planning::Heuristic::cost_to_go, "led by cost_to_go, whose making is included"}};
+
 /// One step of a series: a problem made larger, and its size as the search itself tells it or as it was asked.
 struct Step {
   planning::Problem problem;
@@ -57,14 +64,16 @@ struct Step {
 using Steps = std::function<std::vector<Step>(const suite::Case&)>;
 
 /// The least of three runs, of one where it takes longer than half a second.
-void measure(const suite::Case& c, const Step& step, Cost& cost) {
+void measure(const suite::Case& c, const Step& step, planning::Heuristic by, Cost& cost) {
+  auto problem = step.problem;
+  problem.guidance.heuristic = by;
   double least = 1e9;
   planning::CtsSearch found;
   planning::CtsSettings settings;
   settings.nearest = step.nearest;
   for (int run = 0; run < 3; ++run) {
     const double before = processor_seconds();
-    found = planning::search(step.problem, c.ocean(), c.chart(), {}, settings);
+    found = planning::search(problem, c.ocean(), c.chart(), {}, settings);
     least = std::min(least, processor_seconds() - before);
     if (least > 0.5) break;
   }
@@ -88,19 +97,24 @@ Exponent exponent(const std::vector<Cost>& costs, double Cost::*what) {
 struct Series {
   std::string title, size;
   Steps steps;
-  std::vector<Cost> costs{};
+  std::array<std::vector<Cost>, kLed.size()> costs{};
 
   void add(const suite::Case& c) {
     const auto all = steps(c);
-    costs.resize(all.size());
-    for (std::size_t k = 0; k < all.size(); ++k) measure(c, all[k], costs[k]);
+    for (std::size_t h = 0; h < kLed.size(); ++h) {
+      costs[h].resize(all.size());
+      for (std::size_t k = 0; k < all.size(); ++k) measure(c, all[k], kLed[h].by, costs[h][k]);
+    }
     std::fprintf(stderr, "%s, %s\n", size.c_str(), c.name.c_str());
   }
   void print() const {
+    for (std::size_t h = 0; h < kLed.size(); ++h) print(kLed[h].name, costs[h]);
+  }
+  void print(const char* led, const std::vector<Cost>& all) const {
     std::vector<Cost> means;
-    for (const auto& c : costs) means.push_back(c.mean());
-    std::printf("\n%s; mean of %d seas\n  %14s %14s %14s %16s\n", title.c_str(), costs.front().seas, size.c_str(),
-                "processor s", "expansions", "evaluations");
+    for (const auto& c : all) means.push_back(c.mean());
+    std::printf("\n%s, %s; mean of %d seas\n  %14s %14s %14s %16s\n", title.c_str(), led, all.front().seas,
+                size.c_str(), "processor s", "expansions", "evaluations");
     for (const auto& c : means)
       std::printf("  %14.6g %14.4f %14.0f %16.4g\n", std::exp(c.size), std::exp(c.seconds), std::exp(c.expansions),
                   std::exp(c.evaluations));

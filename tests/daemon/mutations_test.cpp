@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
@@ -89,7 +90,8 @@ int count_wanted(int by_itself) {
 std::string end_of(const std::string& what) {
   for (const char* death :
        {"died of signal", "used more CPU", "killed", "forbidden", "may not", "memory", "longer than"})
-    if (const auto at = what.find(death); at != std::string::npos) return what.substr(at, 40);
+    if (const auto at = what.find(death); at != std::string::npos)
+      return what.substr(at, std::min<std::size_t>(what.find(" while reading", at) - at, 60));
   return "refused";
 }
 

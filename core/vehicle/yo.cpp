@@ -23,11 +23,11 @@ double yo_depth(const model::Glider& glider, double since_dive, double length) {
   return std::clamp(std::min(depth, way_up), 0.0, lowest);
 }
 
-Expected<ocean::Sample, ocean::NoCurrent> current_above_bottom(ocean::FieldRef full, GeoPoint p, double depth,
-                                                               double t_s) {
+Expected<Reached, ocean::NoCurrent> reached_above_bottom(ocean::FieldRef full, GeoPoint p, double depth, double t_s) {
   const auto at = [&](double metres) { return full.sample(p, Depth{Metres{metres}}, t_s); };
   auto found = at(depth);
-  if (found || found.error() != ocean::NoCurrent::below_bottom) return found;
+  if (found) return Reached{*found, depth};
+  if (found.error() != ocean::NoCurrent::below_bottom) return unexpected(found.error());
   found = at(0);
   double water = 0, ground = depth;
   while (found && ground - water > kBottomFound) {
@@ -39,7 +39,15 @@ Expected<ocean::Sample, ocean::NoCurrent> current_above_bottom(ocean::FieldRef f
       ground = middle;
     }
   }
-  return found;
+  if (!found) return unexpected(found.error());
+  return Reached{*found, water};
+}
+
+Expected<ocean::Sample, ocean::NoCurrent> current_above_bottom(ocean::FieldRef full, GeoPoint p, double depth,
+                                                               double t_s) {
+  const auto reached = reached_above_bottom(full, p, depth, t_s);
+  if (!reached) return unexpected(reached.error());
+  return reached->sample;
 }
 
 }  // namespace glidehelm::vehicle

@@ -12,6 +12,13 @@ namespace glidehelm::vehicle {
 /// seeds/README.md). The vertical speed is U·tan(glide angle).
 double yo_depth(const model::Glider& glider, double since_dive, double length);
 
+/// A current and the depth that it was found at.
+struct Reached {
+  ocean::Sample sample;
+  double depth_m{};
+};
+/// The current at a depth, or, below the bottom, the deepest one above it (to half a metre), with its depth.
+Expected<Reached, ocean::NoCurrent> reached_above_bottom(ocean::FieldRef full, GeoPoint p, double depth, double t_s);
 /// The current at a depth, or, below the bottom, the deepest one above it (to half a metre): there the glider turns.
 Expected<ocean::Sample, ocean::NoCurrent> current_above_bottom(ocean::FieldRef full, GeoPoint p, double depth,
                                                                double t_s);

@@ -5,6 +5,7 @@
 #include "daemon/cli/check.hpp"
 #include "daemon/cli/coast.hpp"
 #include "daemon/cli/compare.hpp"
+#include "daemon/cli/drift_verb.hpp"
 #include "daemon/cli/field_verbs.hpp"
 #include "daemon/cli/mafile.hpp"
 #include "daemon/cli/plan.hpp"
@@ -274,6 +275,7 @@ int main(int argc, char** argv) {
   add_plan(app, action);
   add_compare(app, action);
   add_rehearse(app, action);
+  cli::add_drift(app, action);
   add_polar(app, action);
   add_replay(app, action);
   add_mafile(app, action);

@@ -58,6 +58,8 @@ TEST_CASE("below the bottom the deepest current above it counts, to half a metre
   // The current changes by 0.2/400 per metre, so half a metre is 2.5e-4 m/s.
   CHECK(vehicle::current_above_bottom(field, shallow, 300, 0)->current.east.si() == Approx(0.125).margin(2.5e-4));
   CHECK(vehicle::current_above_bottom(field, shallow, 100, 0)->current.east.si() == Approx(0.15));
+  CHECK(vehicle::reached_above_bottom(field, shallow, 300, 0)->depth_m == Approx(149.75).margin(0.25));
+  CHECK(vehicle::reached_above_bottom(field, shallow, 100, 0)->depth_m == 100);
 }
 
 TEST_CASE("a dive in a current that fades with depth meets the mean over its yo-yo, not the surface's") {

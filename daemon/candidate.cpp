@@ -10,6 +10,7 @@
 #include "core/planning/registry.hpp"
 #include "core/vehicle/steering.hpp"
 #include "core/vehicle/yo_field.hpp"
+#include "daemon/world/workers.hpp"
 #include "protocol/goto_list.hpp"
 
 namespace glidehelm::daemon {
@@ -193,7 +194,17 @@ Expected<planning::Bound, planning::PlanFailure> certificate(const mission::Plan
   const PlanningOcean waters{ocean, request};
   planning::BoundSettings settings;
   if (!std::isnan(known_arrival_s)) settings.earlier_than_s = known_arrival_s;
-  auto bound = planning::lower_bound(problem, waters.ocean(), chart, {kCertificateWork, expired}, settings);
+  settings.at_once = [](std::size_t count, const std::function<void(std::size_t)>& body) {
+    world::for_each_index(count, 0, body);
+  };
+  world::Turns turns;
+  const auto one_at_a_time = [&] {
+    bool is_over = false;
+    turns.take([&] { is_over = expired(); });
+    return is_over;
+  };
+  const auto asked = expired ? std::function<bool()>{one_at_a_time} : std::function<bool()>{};
+  auto bound = planning::lower_bound(problem, waters.ocean(), chart, {kCertificateWork, asked}, settings);
   if (bound && bound->kind == planning::Bound::Kind::unreachable)
     bound->reason += assumed_of_time(ocean, problem.start.fix_s, problem.horizon_s);
   return bound;

@@ -29,7 +29,7 @@ mission::Candidate candidate_for(const planning::Plan& plan, const mission::Plan
 inline constexpr std::uint64_t kCertificateWork = 20'000'000;
 
 /// The certificate of a request, on the same currents as its plan. `known_arrival_s`: epoch seconds of a plan that arrives, NaN
-/// without one. `expired` cuts it. The reason of `unreachable` names the policy it assumes for times that the forecast does not have.
+/// without one. `expired` cuts it; it is asked from several threads, but only from one at a time. The reason of `unreachable` names the policy it assumes for times that the forecast does not have.
 Expected<planning::Bound, planning::PlanFailure> certificate(const mission::PlanningRequest& request,
                                                              const OceanSource& ocean, const chart::Chart& chart,
                                                              double known_arrival_s,

@@ -56,7 +56,8 @@ bool Front::spare(const Marker& last, const Marker& m, const Marker& next) const
   if (last.coast && m.coast && next.coast) {
     const double off = kStraight * spacing_;
     if (length < spacing_ && segment_distance(-before.east, -before.north, after.east, after.north) < off) return true;
-    // Along the coast and back on the same way: there is nothing between the two.
+    // Along the coast and back on the same way: there is nothing between the two. One that may still walk stays.
+    if (!m.done) return false;
     const Offset both{before.east + after.east, before.north + after.north};
     return segment_distance(before.east, before.north, both.east, both.north) < off ||
            segment_distance(-after.east, -after.north, -both.east, -both.north) < off;

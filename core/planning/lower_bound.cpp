@@ -1,6 +1,7 @@
 #include "core/planning/lower_bound.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -29,6 +30,7 @@ class Run {
         speed_{speed},
         step_{step},
         until_{until},
+        beside_{2 * spacing},
         envelope_{speed + ocean.dive.fastest().si(), ocean.surface.fastest().si(), problem.schedule.stint.count(),
                   problem.schedule.surface.count()},
         front_{problem.start.fix, ocean.dive, chart, clearance(problem, chart), spacing} {}
@@ -41,8 +43,8 @@ class Run {
       if (move(ocean_.surface, 0, problem_.schedule.drift_before(stint).count())) return reach(now_);
       if (move(ocean_.dive, speed_, problem_.schedule.stint_length(stint).count())) return reach(now_);
       front_.stop([this](double lat, double lon) {
-        const double way =
-            distance_lower_bound(lat, lon, goal_.centre.lat.radians(), goal_.centre.lon.radians()) - goal_.radius.si();
+        const double way = distance_lower_bound(lat, lon, goal_.centre.lat.radians(), goal_.centre.lon.radians()) -
+                           goal_.radius.si() - beside_;
         return now_ + envelope_.least_time(way) > until_;
       });
       if (surfacings_per_isochrone > 0 && stint % surfacings_per_isochrone == 0) keep_isochrone();
@@ -105,6 +107,7 @@ class Run {
   const ocean::Ocean& ocean_;
   vehicle::Disc goal_;
   double speed_, step_, until_;  ///< seconds from the fix
+  double beside_;  ///< metres: what may lie on the edges beside a marker stays of use when the marker is not
   Envelope envelope_;
   Front front_;
   double now_{};
@@ -136,35 +139,55 @@ class Certificate {
         spacing_{spacing_of(problem, settings)},
         step_{settings.step.count() > 0 ? settings.step.count()
                                         : std::min(3600.0, spacing_ / problem.glider.horizontal_speed.si())},
-        horizon_{problem.horizon_s - problem.start.fix_s} {}
+        horizon_{problem.horizon_s - problem.start.fix_s},
+        known_{settings.earlier_than_s - problem.start.fix_s} {}
 
   Bound make() {
-    const double known = settings_.earlier_than_s - problem_.start.fix_s;
-    // A tenth over a known arrival leaves room for the coarse run to be late.
-    const double until = std::min(horizon_, 1.1 * known);
-    const auto fine = run(0, 1, until, settings_.surfacings_per_isochrone);
-    if (!fine) return cut();
-    if (std::isnan(*fine))
-      return until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
-                              : prove_unreachable();
-    const auto coarse = run(0, 2, until, 0);
-    if (!coarse) return cut();
-    const double other = std::isnan(*coarse) ? until : *coarse;
-    const double error = std::abs(other - *fine) + kLeastError * *fine;
+    std::array<Outcome, 2> runs;
+    const auto body = [&](std::size_t k) {
+      runs[k] = k == 0 ? before_known(1, settings_.surfacings_per_isochrone) : before_known(2, 0);
+    };
+    if (settings_.at_once) {
+      settings_.at_once(runs.size(), body);
+    } else {
+      body(0);
+      if (runs[0].reached()) body(1);
+    }
+    auto& [fine, coarse] = runs;
+    bound_.isochrones = std::move(fine.isochrones);
+    if (!count(fine)) return cut();
+    if (!fine.reached())
+      return fine.until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
+                                   : prove_unreachable();
+    if (!count(coarse)) return cut();
+    const double arrival = *fine.arrival, other = coarse.reached() ? *coarse.arrival : coarse.until;
+    const double error = std::abs(other - arrival) + kLeastError * arrival;
     double late = late_at_walls();
     if (met_shallows_ && !met_dry_) {
       // Do the shallows matter? Without a chart the front has no corners to go round, and what it says is a bound in any case.
       // Walls of the field itself cannot be taken away.
-      const auto open = run(0, 1, until, 0, true);
-      if (!open) return cut();
-      const double detour = std::isnan(*open) ? 0.0 : std::max(0.0, *fine - *open);
+      const auto open = run(0, 1, fine.until, 0, true);
+      if (!count(open)) return cut();
+      const double detour = open.reached() ? std::max(0.0, arrival - *open.arrival) : 0.0;
       if (!met_dry_) late = std::min(late, detour);
     }
-    certify(*fine, error + late);
+    certify(arrival, error + late);
     return std::move(bound_);
   }
 
  private:
+  /// What a run found, and what it cost.
+  struct Outcome {
+    std::optional<double>
+        arrival;  ///< seconds from the fix, NaN when the goal is not reached; none when the run was cut
+    double until{};
+    Statistics statistics;
+    std::size_t most_markers{};
+    bool met_coast{}, met_shallows{}, met_dry{};
+    std::vector<Isochrone> isochrones;
+    [[nodiscard]] bool reached() const { return arrival && !std::isnan(*arrival); }
+  };
+
   void certify(double arrival, double error) {
     bound_.kind = Bound::Kind::arrival;
     bound_.error_s = std::min(error, arrival);
@@ -173,9 +196,9 @@ class Certificate {
   Bound prove_unreachable() {
     const double late = late_at_walls();
     const auto raised = run(kSpeedBar, 1, horizon_ + late, 0);
-    if (!raised) return cut();
-    if (!std::isnan(*raised)) {  // within the bar of the horizon: the faster vehicle's arrival is a bound
-      certify(horizon_, std::max(0.0, horizon_ - *raised) + late + kLeastError * horizon_);
+    if (!count(raised)) return cut();
+    if (raised.reached()) {  // within the bar of the horizon: the faster vehicle's arrival is a bound
+      certify(horizon_, std::max(0.0, horizon_ - *raised.arrival) + late + kLeastError * horizon_);
       return std::move(bound_);
     }
     bound_.kind = Bound::Kind::unreachable;
@@ -201,10 +224,19 @@ class Certificate {
   }
   Bound cut() { return nothing("the front was stopped before it came to the goal"); }
 
-  /// Seconds from the fix, NaN when the goal is not reached; none when the budget ended.
-  std::optional<double> run(double raised, double coarser, double until, int isochrones, bool open_water = false) {
-    Budget rest = budget_;
-    rest.work -= std::min(rest.work, bound_.statistics.expansions);
+  /// The arrival that is looked for before a known one. Markers that cannot be there in time stop; so the room over the known arrival, for a
+  /// front that comes late round corners, is made only where it is needed.
+  [[nodiscard]] Outcome before_known(double coarser, int isochrones) const {
+    auto first = run(0, coarser, std::min(horizon_, 1.02 * known_), isochrones);
+    if (first.reached() || !first.arrival || first.until >= horizon_) return first;
+    auto second = run(0, coarser, std::min(horizon_, 1.1 * known_), isochrones);
+    second.statistics += first.statistics;
+    second.most_markers = std::max(first.most_markers, second.most_markers);
+    return second;
+  }
+  /// No state of this object is changed: several may run at once.
+  [[nodiscard]] Outcome run(double raised, double coarser, double until, int isochrones,
+                            bool open_water = false) const {
     static const chart::Chart kOpen;
     Run one{problem_,
             ocean_,
@@ -213,16 +245,27 @@ class Certificate {
             coarser * spacing_,
             coarser * step_,
             until};
-    const auto end = one.go(rest, isochrones);
-    bound_.statistics.expansions += one.steps();
-    bound_.statistics.current_evaluations += one.evaluations();
-    bound_.most_markers = std::max(bound_.most_markers, one.most_markers());
-    met_coast_ = met_coast_ || one.met_coast();
-    met_shallows_ = met_shallows_ || one.met_shallows();
-    met_dry_ = met_dry_ || one.met_dry();
-    if (isochrones > 0) bound_.isochrones = one.isochrones();
-    if (end == Run::End::cut) return std::nullopt;
-    return end == Run::End::reached ? one.arrival() : std::nan("");
+    Outcome found;
+    const auto end = one.go(budget_, isochrones);
+    if (end != Run::End::cut) found.arrival = end == Run::End::reached ? one.arrival() : std::nan("");
+    found.until = until;
+    found.statistics.expansions = one.steps();
+    found.statistics.current_evaluations = one.evaluations();
+    found.most_markers = one.most_markers();
+    found.met_coast = one.met_coast();
+    found.met_shallows = one.met_shallows();
+    found.met_dry = one.met_dry();
+    if (isochrones > 0) found.isochrones = one.isochrones();
+    return found;
+  }
+  /// Adds a run to the answer. False when it was cut, or when all runs together did more than they may.
+  bool count(const Outcome& found) {
+    bound_.statistics += found.statistics;
+    bound_.most_markers = std::max(bound_.most_markers, found.most_markers);
+    met_coast_ = met_coast_ || found.met_coast;
+    met_shallows_ = met_shallows_ || found.met_shallows;
+    met_dry_ = met_dry_ || found.met_dry;
+    return found.arrival && bound_.statistics.expansions <= budget_.work;
   }
 
   const Problem& problem_;
@@ -231,6 +274,7 @@ class Certificate {
   const Budget& budget_;
   const BoundSettings& settings_;
   double spacing_, step_, horizon_;
+  double known_;  ///< arrival, seconds from the fix
   bool met_coast_{}, met_shallows_{}, met_dry_{};
   Bound bound_;
 };

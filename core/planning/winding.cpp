@@ -72,60 +72,75 @@ class Raster {
   std::vector<std::int16_t> winds_;
 };
 
-/// Winding numbers of any places: the edges of a polygon by the rows that they cross.
+/// Winding numbers of places near some of a polygon's markers: the edges by the rows that they cross.
 class Rows {
  public:
-  Rows(const std::vector<Marker>& polygon, const Squares& lattice) : polygon_{polygon}, lattice_{lattice} {
+  /// `near`: the markers; places up to `kReach` cells from them may be asked for.
+  Rows(const std::vector<Marker>& polygon, const Squares& lattice, const std::vector<bool>& near) : lattice_{lattice} {
     double south = 1e18, north = -1e18;
     for (const auto& m : polygon) {
       south = std::min(south, row_of(m.lat));
       north = std::max(north, row_of(m.lat));
     }
     south_ = std::floor(south);
-    first_.assign(static_cast<std::size_t>(std::floor(north) - south_) + 2, 0);
-    for_rows([this](std::size_t row, std::size_t) { ++first_[row + 1]; });
+    const auto rows = static_cast<std::size_t>(std::floor(north) - south_) + 1;
+    std::vector<char> wanted(rows);
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      if (!near[i]) continue;
+      const double row = row_of(polygon[i].lat) - south_, reach = kReach * kPerCell;
+      const auto last = std::min(rows - 1, static_cast<std::size_t>(row + reach));
+      for (auto k = static_cast<std::size_t>(std::max(0.0, row - reach)); k <= last; ++k) wanted[k] = 1;
+    }
+    const auto for_rows = [&](const auto& touch) {
+      for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Marker &from = polygon[i], &to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+        const double f = row_of(from.lat) - south_, t = row_of(to.lat) - south_;
+        const auto last = static_cast<std::size_t>(std::max(f, t));
+        for (auto row = static_cast<std::size_t>(std::min(f, t)); row <= last; ++row)
+          if (wanted[row] != 0) touch(row, from, to);
+      }
+    };
+    first_.assign(rows + 1, 0);
+    for_rows([&](std::size_t row, const Marker&, const Marker&) { ++first_[row + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
     edges_.resize(first_.back());
     auto next = first_;
-    for_rows([&](std::size_t row, std::size_t edge) { edges_[next[row]++] = static_cast<std::uint32_t>(edge); });
+    for_rows([&](std::size_t row, const Marker& from, const Marker& to) {
+      const double rise = to.lat - from.lat;
+      edges_[next[row]++] = {from.lat, to.lat, from.lon, rise == 0 ? 0.0 : (to.lon - from.lon) / rise};
+    });
   }
   [[nodiscard]] bool winds_about(double lat, double lon) const {
     const double row = row_of(lat) - south_;
     if (!(row >= 0 && row < static_cast<double>(first_.size() - 1))) return false;
-    int winds = 0;
     const auto k = static_cast<std::size_t>(row);
+    int winds = 0;
     for (auto e = first_[k]; e < first_[k + 1]; ++e) {
-      const Marker &a = polygon_[edges_[e]], &b = after(edges_[e]);
-      if ((a.lat <= lat) == (b.lat <= lat)) continue;
-      if (a.lon + (b.lon - a.lon) * (lat - a.lat) / (b.lat - a.lat) < lon) winds += b.lat > a.lat ? 1 : -1;
+      const Edge& edge = edges_[e];
+      const int crosses = static_cast<int>(edge.from <= lat) - static_cast<int>(edge.to <= lat);  // upwards +1
+      winds += edge.lon + edge.slope * (lat - edge.from) < lon ? crosses : 0;
     }
     return winds != 0;
   }
+  static constexpr double kReach = 0.25;
 
  private:
-  /// Narrow rows: beside coasts edges are short.
-  [[nodiscard]] double row_of(double lat) const { return 8 * (lat - lattice_.lat) * lattice_.per_lat; }
-  [[nodiscard]] const Marker& after(std::size_t i) const { return polygon_[i + 1 == polygon_.size() ? 0 : i + 1]; }
-  /// Each row with each edge that touches it, edges in order.
-  template <class Touch>
-  void for_rows(const Touch& touch) const {
-    for (std::size_t i = 0; i < polygon_.size(); ++i) {
-      const double a = row_of(polygon_[i].lat) - south_, b = row_of(after(i).lat) - south_;
-      const auto last = static_cast<std::size_t>(std::max(a, b));
-      for (auto row = static_cast<std::size_t>(std::min(a, b)); row <= last; ++row) touch(row, i);
-    }
-  }
+  struct Edge {
+    double from, to;    ///< latitudes
+    double lon, slope;  ///< where it begins; longitude per latitude
+  };
+  static constexpr double kPerCell = 8;  ///< narrow rows: beside coasts edges are short
+  [[nodiscard]] double row_of(double lat) const { return kPerCell * (lat - lattice_.lat) * lattice_.per_lat; }
 
-  const std::vector<Marker>& polygon_;
   Squares lattice_;
   double south_{};
-  std::vector<std::size_t> first_;    ///< of each row's edges in `edges_`, and one past the last
-  std::vector<std::uint32_t> edges_;  ///< by row, by number
+  std::vector<std::size_t> first_;  ///< of each row's edges in `edges_`, and one past the last
+  std::vector<Edge> edges_;         ///< by row
 };
 
 /// Beside a coast: see deep_inside.
 bool deep_beside_coast(const Marker& m, const Rows& rows, const Squares& lattice, const Surroundings& around) {
-  constexpr std::array kParts{1.0 / 64, 1.0 / 4};
+  constexpr std::array kParts{1.0 / 64, Rows::kReach};
   const double s = std::sqrt(0.5);
   const std::array<std::array<double, 2>, 8> turns{
       {{1, 0}, {s, s}, {s, -s}, {0, 1}, {0, -1}, {-s, s}, {-s, -s}, {-1, 0}}};
@@ -147,13 +162,14 @@ Squares Squares::about(double lat, double lon, double cell_m) {
 
 std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Squares& lattice, const Surroundings& around,
                               const std::vector<bool>& asked) {
+  std::vector<bool> deep(polygon.size()), beside(polygon.size());
+  for (std::size_t i = 0; i < polygon.size(); ++i) beside[i] = asked[i] && around.beside_coast(polygon[i]);
   std::optional<Raster> raster;
   std::optional<Rows> rows;
-  std::vector<bool> deep(polygon.size());
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (!asked[i]) continue;
-    if (around.beside_coast(polygon[i])) {
-      if (!rows) rows.emplace(polygon, lattice);
+    if (beside[i]) {
+      if (!rows) rows.emplace(polygon, lattice, beside);
       deep[i] = deep_beside_coast(polygon[i], *rows, lattice, around);
     } else {
       if (!raster) raster.emplace(polygon, lattice);

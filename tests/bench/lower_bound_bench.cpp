@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/planning/lower_bound.hpp"
 #include "core/planning/registry.hpp"
+#include "daemon/world/workers.hpp"
 #include "tests/bench/case_suite.hpp"
 
 // The sandwich: plan and bound on the same seas. For every case the bound with its bar, the share of the bar, how far the best
@@ -46,6 +48,9 @@ void run(const suite::Case& c, Worst& worst) {
   const double travel = arrives ? plan->arrival_s - c.problem.start.fix_s : std::nan("");
   planning::BoundSettings settings;
   if (arrives) settings.earlier_than_s = plan->arrival_s;
+  settings.at_once = [](std::size_t runs, const std::function<void(std::size_t)>& body) {
+    world::for_each_index(runs, 0, body);
+  };
   const Watch watch;
   const auto bound = planning::lower_bound(c.problem, c.ocean(), c.chart(), {}, settings);
   const double wall = watch.wall(), processor = watch.processor();

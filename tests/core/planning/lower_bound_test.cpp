@@ -1,8 +1,12 @@
 #include "core/planning/lower_bound.hpp"
 
+#include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
+#include <limits>
+#include <thread>
+#include <vector>
 
 #include "core/planning/registry.hpp"
 #include "tests/support/planning.hpp"
@@ -296,6 +300,41 @@ TEST_CASE("the bound is the same every time and stops by its budget") {
   REQUIRE(cut);
   CHECK(cut->kind == Bound::Kind::cut);
   CHECK_FALSE(cut->reason.empty());
+}
+
+TEST_CASE("the bound is the same whether its runs come one after the other or at once") {
+  // One sea that is reached, one goal that is not (then the coarse run was for nothing and leaves no trace), and one budget that each of
+  // two runs stays within and both together do not.
+  const auto sea = test::analytic_seas()[5];
+  auto beyond = sea.problem;
+  beyond.horizon_s = test::kT0 + 0.5 * (bound_of(sea.problem, sea.field).travel_s);
+  const auto at_once = [](std::size_t count, const std::function<void(std::size_t)>& body) {
+    std::vector<std::thread> threads;
+    for (std::size_t k = 0; k < count; ++k) threads.emplace_back(body, k);
+    for (auto& thread : threads) thread.join();
+  };
+  const auto too_little = bound_of(sea.problem, sea.field).statistics.expansions - 1;
+  for (const auto& p : {sea.problem, beyond})
+    for (const std::uint64_t work : {std::numeric_limits<std::uint64_t>::max(), too_little}) {
+      planning::Budget budget;
+      budget.work = work;
+      planning::BoundSettings settings;
+      settings.surfacings_per_isochrone = 2;
+      const auto one = planning::lower_bound(p, {sea.field, sea.field}, chart::Chart{}, budget, settings);
+      settings.at_once = at_once;
+      const auto two = planning::lower_bound(p, {sea.field, sea.field}, chart::Chart{}, budget, settings);
+      REQUIRE(one);
+      REQUIRE(two);
+      CHECK(one->kind == two->kind);
+      CHECK(std::bit_cast<std::uint64_t>(one->travel_s) == std::bit_cast<std::uint64_t>(two->travel_s));
+      CHECK(one->error_s == two->error_s);
+      CHECK(one->reason == two->reason);
+      CHECK(one->statistics == two->statistics);
+      CHECK(one->most_markers == two->most_markers);
+      REQUIRE(one->isochrones.size() == two->isochrones.size());
+      for (std::size_t i = 0; i < one->isochrones.size(); ++i)
+        CHECK(one->isochrones[i].line == two->isochrones[i].line);
+    }
 }
 
 TEST_CASE("isochrones of still water are circles") {

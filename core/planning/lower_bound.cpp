@@ -171,6 +171,9 @@ class Certificate {
       const double detour = open.reached() ? std::max(0.0, arrival - *open.arrival) : 0.0;
       if (!met_dry_) late = std::min(late, detour);
     }
+    if (arrival - late > (1 + kLeastError) * known_)
+      return nothing(
+          "the front comes to the goal later than a plan that is known: it has lost a way and proves nothing");
     certify(arrival, error + late);
     return std::move(bound_);
   }

@@ -34,9 +34,10 @@ struct Bound {
 };
 
 struct BoundSettings {
-  Metres spacing{};             ///< of the markers; 0 = 1/130 of the way, between 100 m and 5 km
-  Seconds step{};               ///< longest step; 0 = one spacing through still water, at most 1 h
-  double earlier_than_s{1e18};  ///< epoch seconds: an arrival that is known; only earlier ones are looked for closely
+  Metres spacing{};  ///< of the markers; 0 = 1/130 of the way, between 100 m and 5 km
+  Seconds step{};    ///< longest step; 0 = one spacing through still water, at most 1 h
+  /// Epoch seconds: an arrival that is known; only earlier ones are looked for closely. A front that comes later has lost a way: no answer.
+  double earlier_than_s{1e18};
   int surfacings_per_isochrone{};  ///< 0: none are kept
   /// Calls `body(k)` for every k < count, in any order and at once if it likes, and returns when all have; none: one after the
   /// other. The answer is the same; `Budget::expired` must bear to be asked from several threads.

@@ -337,6 +337,26 @@ TEST_CASE("the bound is the same whether its runs come one after the other or at
     }
 }
 
+TEST_CASE("a front that comes later than a plan that is known proves nothing") {
+  const test::Uniform current{0.05, 0.1};
+  const auto p = test::problem_between(geo_point(28, -16), geo_point(28.3, -15.7));
+  const auto bound_before = [&](double known_s) {
+    planning::BoundSettings settings{Metres{400}, {}};
+    settings.earlier_than_s = known_s;
+    const auto bound = planning::lower_bound(p, {current, current}, chart::Chart{}, {}, settings);
+    REQUIRE(bound);
+    return *bound;
+  };
+  const auto free = bound_before(1e18);
+  REQUIRE(free.kind == planning::Bound::Kind::arrival);
+  const double arrival = free.travel_s + free.error_s;
+  CHECK(bound_before(test::kT0 + 1.01 * arrival).kind == planning::Bound::Kind::arrival);
+  // One per cent sooner than can be: as if the front had lost the way of that plan.
+  const auto lost = bound_before(test::kT0 + 0.99 * arrival);
+  CHECK(lost.kind == planning::Bound::Kind::cut);
+  CHECK(lost.reason.find("lost a way") != std::string::npos);
+}
+
 TEST_CASE("isochrones of still water are circles") {
   const test::Uniform still{};
   const auto p = submerged(geo_point(45, -10), geo_point(45, -9.2));

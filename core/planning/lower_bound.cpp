@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
@@ -13,9 +14,11 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr double kOwnClearance = 25;  // metres by which walls are drawn back
-constexpr double kCoasts = 0.15;      // spacings that the front may be late behind coasts: its shortest edges there
-constexpr double kCorners = 6;        // and behind the corners of walls on which it cannot walk
+constexpr double kOwnClearance = 25;                  // metres by which walls are drawn back
+constexpr std::array<double, 3> kCoarser{1, 1.5, 2};  // spacings and steps of the runs
+constexpr double kDoubt = 2;                          // what the two earliest runs differ by, and as much again
+constexpr double kCoasts = 0.15;  // spacings that the front may be late behind coasts: its shortest edges there
+constexpr double kCorners = 6;    // and behind the corners of walls on which it cannot walk
 
 /// One run of a front from the fix to the goal.
 class Run {
@@ -143,30 +146,32 @@ class Certificate {
         known_{settings.earlier_than_s - problem.start.fix_s} {}
 
   Bound make() {
-    std::array<Outcome, 2> runs;
+    std::array<Outcome, kCoarser.size()> runs;
     const auto body = [&](std::size_t k) {
-      runs[k] = k == 0 ? before_known(1, settings_.surfacings_per_isochrone) : before_known(2, 0);
+      runs[k] = before_known(kCoarser[k], k == 0 ? settings_.surfacings_per_isochrone : 0);
     };
     if (settings_.at_once) {
       settings_.at_once(runs.size(), body);
     } else {
-      body(0);
-      if (runs[0].reached()) body(1);
+      for (std::size_t k = 0; k < runs.size(); ++k) body(k);
     }
-    auto& [fine, coarse] = runs;
-    bound_.isochrones = std::move(fine.isochrones);
-    if (!count(fine)) return cut();
-    if (!fine.reached())
-      return fine.until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
-                                   : prove_unreachable();
-    if (!count(coarse)) return cut();
-    const double arrival = *fine.arrival, other = coarse.reached() ? *coarse.arrival : coarse.until;
-    const double error = std::abs(other - arrival) + kLeastError * arrival;
+    bound_.isochrones = std::move(runs[0].isochrones);
+    std::vector<double> arrivals;
+    for (const auto& run : runs) {
+      if (!count(run)) return cut();
+      if (run.reached()) arrivals.push_back(*run.arrival);
+    }
+    if (arrivals.empty())
+      return runs[0].until < horizon_ ? nothing("the front does not reach the goal before the known arrival")
+                                      : prove_unreachable();
+    std::sort(arrivals.begin(), arrivals.end());
+    const double arrival = arrivals[0];
+    const double error = arrivals.size() > 1 ? kDoubt * (arrivals[1] - arrival) : runs[0].until - arrival;
     double late = late_at_walls();
     if (met_shallows_ && !met_dry_) {
       // Do the shallows matter? Without a chart the front has no corners to go round, and what it says is a bound in any case.
       // Walls of the field itself cannot be taken away.
-      const auto open = run(0, 1, fine.until, 0, true);
+      const auto open = run(0, 1, runs[0].until, 0, true);
       if (!count(open)) return cut();
       const double detour = open.reached() ? std::max(0.0, arrival - *open.arrival) : 0.0;
       if (!met_dry_) late = std::min(late, detour);
@@ -174,7 +179,7 @@ class Certificate {
     if (arrival - late > (1 + kLeastError) * known_)
       return nothing(
           "the front comes to the goal later than a plan that is known: it has lost a way and proves nothing");
-    certify(arrival, error + late);
+    certify(arrival, error + kLeastError * arrival + late);
     return std::move(bound_);
   }
 

@@ -49,15 +49,16 @@ inline constexpr double kSpeedBar = 0.005;
 
 /// The earliest arrival by the front of what can be reached (front.hpp, docs/decisions/022).
 ///
-/// Computed twice, the second time with twice the step and spacing. The method is of second order, so the finer result is
-/// about a third of the difference away from the truth; the whole difference and `kLeastError` of the time are the error
-/// bar, and `travel_s` has it subtracted. Where the front met coasts or borders of areas, which it walks round (wall_walk.hpp), its
-/// shortest edge there, 0.15 of the spacing, is subtracted as well. Behind other walls it is late by a few spacings: where it
-/// met shallows, the time of six spacings comes on top, but no more than the detour that the chart costs (a third
+/// Computed three times, with steps and spacings of 1, 1.5 and 2. Every marker is where a vehicle can be, so a front that has lost a way is
+/// late, never early: the earliest of the three counts. The method is of second order: where all three go the same way, the finest is
+/// late by e and the next by 2.25 e. Twice the difference of the two earliest, 2.5 e then, and `kLeastError` of the time are the
+/// error bar, and `travel_s` has it subtracted. Where the front met coasts or borders of areas, which it walks round
+/// (wall_walk.hpp), its shortest edge there, 0.15 of the spacing, is subtracted as well. Behind other walls it is late by a few
+/// spacings: where it met shallows, the time of six spacings comes on top, but no more than the detour that the chart costs (another
 /// run, without it, tells); where it met the field's own land or water without data, all of it. Passages between coasts down to
 /// some 20 m are gone through whatever the spacing; one between other walls may be lost when it is narrower than a spacing. Where
-/// the goal stays unreached the front is moved again with the speed raised by `kSpeedBar`, and only when that does not reach it
-/// either it is `unreachable`.
+/// the goal stays unreached by all three the front is moved again with the speed raised by `kSpeedBar`, and only when that does not reach
+/// it either it is `unreachable`.
 ///
 /// A known arrival stops the markers that cannot reach the goal within 2 % after it; a front that comes later (round corners) is moved
 /// again with 10 %.

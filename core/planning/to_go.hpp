@@ -53,7 +53,7 @@ class ToGo {
   Envelope water_descent_;
 };
 
-/// The ToGo of all searches of one answer: made, and paid for, when the first of them asks. Looks at its arguments; for one thread.
+/// The ToGo of all searches of one answer: made, and paid for, when the first of them asks. Its arguments must outlive it; for one thread.
 class SharedToGo {
  public:
   SharedToGo(const Problem& problem, Members members, const chart::Chart& chart)

@@ -44,14 +44,15 @@ TEST_CASE("best is never worse than any single method and wears the name of the 
 TEST_CASE("searches that end in the same valley leave no doubt, and those that do not arrive leave some") {
   const test::Uniform current{0.05, 0.1};
   const std::array<ocean::Ocean, 1> members{ocean::Ocean{current, current}};
+  const chart::Chart open;
   auto p = test::problem_between(geo_point(28, -16), geo_point(28.3, -15.7));
   const auto in_doubt = [&] {
-    const auto plan = planning::planner_named("cts-astar")->plan(p, members, chart::Chart{}, {}, {});
+    const auto plan = planning::planner_named("cts-astar")->plan(p, members, open, {}, {});
     REQUIRE(plan);
     const planning::Budget endless;
     planning::Purse purse{endless};
-    planning::SharedToGo to_go{p, members, chart::Chart{}};
-    return planning::refined({&*plan, 1}, p, members[0], chart::Chart{}, purse, to_go).in_doubt;
+    planning::SharedToGo to_go{p, members, open};
+    return planning::refined({&*plan, 1}, p, members[0], open, purse, to_go).in_doubt;
   };
   CHECK_FALSE(in_doubt());
   p.horizon_s = test::kT0 + 0.7 * planning::still_water_time(p).count();

@@ -7,22 +7,12 @@
 
 #include "daemon/cli/drift_verb.hpp"
 #include "daemon/world/real.hpp"
+#include "tests/support/four_oceans.hpp"
 #include "tests/support/netcdf.hpp"
 
 using namespace glidehelm;
 
 namespace {
-
-/// Four oceans, each the same everywhere and always: eastward 0.02, 0.06, −0.06 and −0.6 m/s.
-const std::string kFourOceans = R"(netcdf e {
-dimensions: member = 4 ; lat = 2 ; lon = 2 ;
-variables: double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
-  float u(member, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ;
-  float v(member, lat, lon) ; v:units = "m/s" ; v:standard_name = "northward_sea_water_velocity" ;
-data: lat = -2, 2 ; lon = 0, 8 ;
-  u = 0.02, 0.02, 0.02, 0.02, 0.06, 0.06, 0.06, 0.06, -0.06, -0.06, -0.06, -0.06, -0.6, -0.6, -0.6, -0.6 ;
-  v = 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 ;
-})";
 
 /// Eastward 0.2 m/s at the surface, northward 0.1 m/s at 500 m; one day of it.
 const std::string kTwoLevels = R"(netcdf d {
@@ -81,7 +71,7 @@ bool parses(const std::string& words) {
 }  // namespace
 
 TEST_CASE("a drifter's way, that of the members and how they spread are told") {
-  Adrift adrift{kFourOceans};
+  Adrift adrift{test::four_oceans()};
   adrift.options.members = 4;
   const auto heard = adrift.drift();
   INFO(heard.err);
@@ -145,14 +135,14 @@ TEST_CASE("a float that parks below the forecast's last level is carried there a
   CHECK(heard.out.find("float parked at 1000 m") != std::string::npos);
   CHECK(heard.out.find("at 500 m instead of 1000 m") != std::string::npos);
   CHECK(heard.out.find("parked\n") != std::string::npos);
-  Adrift flat{kFourOceans};
+  Adrift flat{test::four_oceans()};
   flat.options.vehicle = vehicle::ProfilingFloat{};
   CHECK(flat.drift().err.find("one level only") != std::string::npos);
 }
 
 TEST_CASE("areas that bind the glider do not stop what drifts") {
   // The drifter gets to 3.031 E, through an area that is forbidden to the glider from 3.02 E.
-  Adrift adrift{kFourOceans,
+  Adrift adrift{test::four_oceans(),
                 "safety: {keep_out: [[{lat_deg: -0.1, lon_deg: 3.02}, {lat_deg: -0.1, lon_deg: 3.1}, {lat_deg: 0.1, "
                 "lon_deg: 3.1}, {lat_deg: 0.1, lon_deg: 3.02}]]}\n"};
   const auto heard = adrift.drift();
@@ -171,7 +161,7 @@ TEST_CASE("drift refuses what cannot be and says what is allowed") {
   CHECK_FALSE(parses("m.yaml --every 0"));
   CHECK_FALSE(parses("m.yaml --from 28.2"));
 
-  Adrift adrift{kFourOceans};
+  Adrift adrift{test::four_oceans()};
   adrift.options.vehicle = vehicle::ProfilingFloat{Metres{1000}, Metres{500}};
   const auto shallow = adrift.drift();
   CHECK(shallow.code == 2);

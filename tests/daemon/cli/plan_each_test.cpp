@@ -7,27 +7,17 @@
 #include "daemon/cli/plan.hpp"
 #include "daemon/cli/plan_case.hpp"
 #include "tests/daemon/cli/field_verb.hpp"
+#include "tests/support/four_oceans.hpp"
 
 using namespace glidehelm;
 
 namespace {
 
-/// Uniform eastward currents of 0.02, 0.06, −0.06 and −0.6 m/s and a northward one of 0.05 m/s in the third.
-const std::string kFourSeas = R"(netcdf e {
-dimensions: member = 4 ; lat = 2 ; lon = 2 ;
-variables: double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
-  float u(member, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ;
-  float v(member, lat, lon) ; v:units = "m/s" ; v:standard_name = "northward_sea_water_velocity" ;
-data: lat = -2, 2 ; lon = 0, 8 ;
-  u = 0.02, 0.02, 0.02, 0.02, 0.06, 0.06, 0.06, 0.06, -0.06, -0.06, -0.06, -0.06, -0.6, -0.6, -0.6, -0.6 ;
-  v = 0, 0, 0, 0, 0, 0, 0, 0, 0.05, 0.05, 0.05, 0.05, 0, 0, 0, 0 ;
-})";
-
 struct EachDesk {
   test::ScratchFolder folder;
   cli::PlanOptions options;
   EachDesk() {
-    const auto file = test::make_netcdf(folder, "e.nc", kFourSeas);
+    const auto file = test::make_netcdf(folder, "e.nc", test::four_oceans("0.05"));
     test::write_bytes(folder / "m.yaml",
                       "schema: glidehelm/mission/v1\nname: east\nglider: sim01\n"
                       "goal: {lat_deg: 0.0, lon_deg: 3.4, radius_m: 1000}\n"

@@ -8,22 +8,12 @@
 
 #include "daemon/cli/plan.hpp"
 #include "daemon/world/real.hpp"
+#include "tests/support/four_oceans.hpp"
 #include "tests/support/netcdf.hpp"
 
 using namespace glidehelm;
 
 namespace {
-
-/// Four oceans, each the same everywhere and always: an eastward current of 0.02, 0.06, −0.06 and −0.6 m/s.
-const std::string kEnsemble = R"(netcdf e {
-dimensions: member = 4 ; lat = 2 ; lon = 2 ;
-variables: double lat(lat) ; lat:units = "degrees_north" ; double lon(lon) ; lon:units = "degrees_east" ;
-  float u(member, lat, lon) ; u:units = "m/s" ; u:standard_name = "eastward_sea_water_velocity" ;
-  float v(member, lat, lon) ; v:units = "m/s" ; v:standard_name = "northward_sea_water_velocity" ;
-data: lat = -2, 2 ; lon = 0, 8 ;
-  u = 0.02, 0.02, 0.02, 0.02, 0.06, 0.06, 0.06, 0.06, -0.06, -0.06, -0.06, -0.06, -0.6, -0.6, -0.6, -0.6 ;
-  v = 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0 ;
-})";
 
 /// One of those oceans as a file of its own, with the reference time `cycle` if one is given.
 std::string one_member(double east, const std::string& cycle = {}) {
@@ -62,7 +52,7 @@ struct Desk {
   test::ScratchFolder folder;
   cli::PlanOptions options;
   Desk() {
-    test::make_netcdf(folder, "e.nc", kEnsemble);
+    test::make_netcdf(folder, "e.nc", test::four_oceans());
     write_mission("files: [" + (folder / "e.nc") + "]");
     options.mission = folder / "m.yaml";
     options.json = true;

@@ -18,13 +18,18 @@ function(glidehelm_room name)
   add_library(glidehelm::${name} ALIAS glidehelm_${name})
 endfunction()
 
-# A program of one main file. All programs lie in one folder, as they do when installed: they look for each other there.
-function(glidehelm_program name)
+# An executable in the one folder of all programs: they look for each other there, as they do when installed.
+function(glidehelm_executable name)
   cmake_parse_arguments(PROGRAM "" "" "SOURCES;LINKS" ${ARGN})
   add_executable(${name} ${PROGRAM_SOURCES})
   glidehelm_flags(${name})
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${PROGRAM_LINKS})
+endfunction()
+
+# A program for users: an executable that is installed.
+function(glidehelm_program name)
+  glidehelm_executable(${name} ${ARGN})
   install(TARGETS ${name} RUNTIME)
 endfunction()

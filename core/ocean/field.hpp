@@ -38,10 +38,12 @@ struct Coverage {
   [[nodiscard]] bool contains(GeoPoint p) const {
     const double lat = p.lat.radians();
     if (lat < south || lat > north) return false;
-    double lon = p.lon.radians();
-    // In one step, not turn by turn: a lane that left the globe would keep such a loop for ever.
-    if (lon < west || lon >= west + 2 * kPi) lon -= 2 * kPi * std::floor((lon - west) / (2 * kPi));
-    return lon <= east;  // neither NaN nor an infinite longitude is inside
+    const double lon = p.lon.radians();
+    if (lon >= west && lon <= east) return true;
+    // In one step, not turn by turn: a lane that left the globe would keep such a loop for ever. What a turn loses in the rounding does not put
+    // an edge outside. Neither NaN nor an infinite longitude is inside.
+    const double middle = 0.5 * (west + east), rounding = 1e-12;
+    return std::abs(std::remainder(lon - middle, 2 * kPi)) <= 0.5 * (east - west) + rounding;
   }
   friend bool operator==(const Coverage&, const Coverage&) = default;
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/base/local_metric.hpp"
+#include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/goal_distance.hpp"
 
@@ -50,23 +51,34 @@ TriangleLattice lattice_around(const Problem& problem, const ocean::Coverage& co
           reach(to_start.east, half - eastward, metric.parallel_radius)};
 }
 
-/// Seconds at the fastest speed over ground. Between two nodes of a rim a distance is less than linear: by side²/8d at most.
-double by_distance(const GoalDistance& goal, double radius, double fastest, double side, double lat, double lon) {
-  const double d = goal.least(lat, lon);
-  return d > 0 ? (d - radius - side * side / (8 * d)) / fastest : 0.0;
-}
+/// Beyond all lattices: seconds over the distance at the fastest speed over ground. Between two nodes of a rim a distance is less than linear: by
+/// side²/8d at most.
+class ByDistance {
+ public:
+  ByDistance(const Problem& problem, const ocean::Ocean& ocean)
+      : goal_{disc_of(problem)},
+        radius_{disc_of(problem).radius.si()},
+        fastest_{reach_of(problem, ocean).dive},
+        side_{kFarSide * side_of(problem)} {}
+  double operator()(double lat, double lon) const {
+    const double d = goal_.least(lat, lon);
+    return d > 0 ? (d - radius_ - side_ * side_ / (8 * d)) / fastest_ : 0.0;
+  }
+
+ private:
+  GoalDistance goal_;
+  double radius_, fastest_, side_;
+};
 
 }  // namespace
 
 CostToGo::CostToGo(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart)
-    : fastest_{problem.glider.horizontal_speed.si() + ocean.dive.fastest().si()},
-      far_{lattice_around(problem, ocean.dive.coverage(), kFarSide, kFarRoom), problem, ocean, chart,
-           [this, goal = GoalDistance{disc_of(problem)}, radius = disc_of(problem).radius.si(),
-            side = kFarSide * side_of(problem)](double lat, double lon) {
-             return by_distance(goal, radius, fastest_, side, lat, lon);
-           }},
+    : far_{lattice_around(problem, ocean.dive.coverage(), kFarSide, kFarRoom), problem, ocean, chart,
+           ByDistance{problem, ocean}},
       near_{lattice_around(problem, ocean.dive.coverage(), 1, kRoom), problem, ocean, chart,
-            [this](double lat, double lon) { return far_.at(lat, lon).value_or(0); }},
-      drift_rate_{std::max({near_.drift_rate(), far_.drift_rate(), ocean.surface.fastest().si() / fastest_})} {}
+            [this](double lat, double lon) { return far_.at(lat, lon).value_or(0); }} {
+  const auto reach = reach_of(problem, ocean);
+  drift_rate_ = std::max({near_.drift_rate(), far_.drift_rate(), reach.drift / reach.dive});
+}
 
 }  // namespace glidehelm::planning

@@ -8,7 +8,7 @@
 namespace glidehelm::planning {
 
 /// The least time that is left to the goal, from everywhere: a potential on a fine lattice around start and goal, whose rim is told by one on a
-/// lattice three times as coarse that reaches three times as far, whose rim is told by the distance over U + |c|max (docs/decisions/032). O(n log n) in
+/// lattice three times as coarse that reaches four times as far, whose rim is told by the distance over U + |c|max (docs/decisions/032). O(n log n) in
 /// the nodes, some 10^4 of them.
 class CostToGo {
  public:
@@ -29,9 +29,8 @@ class CostToGo {
   [[nodiscard]] const TriangleLattice& lattice() const { return near_.lattice(); }
 
  private:
-  double fastest_;  ///< m/s over ground
   Potential far_, near_;
-  double drift_rate_;
+  double drift_rate_{};
 };
 
 }  // namespace glidehelm::planning

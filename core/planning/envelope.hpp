@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/model/dive_schedule.hpp"
+#include "core/planning/planner.hpp"
 
 namespace glidehelm::planning {
 
@@ -42,5 +43,8 @@ struct Envelope {
     return wait + std::min(dive_time, (distance - drifted) / dive);
   }
 };
+
+/// How fast the distance to anything can shrink at most: dives with U + |c|max, drifts with |c|max of the surface.
+Envelope reach_of(const Problem& problem, const ocean::Ocean& ocean);
 
 }  // namespace glidehelm::planning

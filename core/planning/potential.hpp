@@ -20,7 +20,7 @@ namespace glidehelm::planning {
 /// change until the horizon (lattice_water.hpp). At the rim V is at most what the place beyond is said to be worth.
 ///
 /// Computed from the goal and the rim inwards, each node from two others of a triangle between which the soonest way leads, as often as that makes it
-/// sooner; then lowered where V falls by more than 1.002 s/s. What was not reached has more than the horizon. O(n log n) in the nodes where currents
+/// sooner; then lowered where V falls by more than 1.005 s/s. What was not reached has more than the horizon. O(n log n) in the nodes where currents
 /// are slower than the glider, several times that in others; deterministic.
 class Potential {
  public:

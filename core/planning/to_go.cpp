@@ -4,11 +4,6 @@
 
 namespace glidehelm::planning {
 
-Envelope reach_of(const Problem& problem, const ocean::Ocean& ocean) {
-  return {problem.glider.horizontal_speed.si() + ocean.dive.fastest().si(), ocean.surface.fastest().si(),
-          problem.schedule.stint.count(), problem.schedule.surface.count()};
-}
-
 ToGo::ToGo(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart)
     : schedule_{problem.schedule},
       radius_{disc_of(problem).radius.si()},

@@ -10,9 +10,6 @@
 
 namespace glidehelm::planning {
 
-/// How fast the distance to anything can shrink at most: dives with U + |c|max, drifts with |c|max of the surface.
-Envelope reach_of(const Problem& problem, const ocean::Ocean& ocean);
-
 /// h(n) of CTS-A*: a lower bound of the time from a surfacing to the goal's disc.
 ///
 /// All heuristics are one theorem. Let a potential V ≤ 0 on the goal's disc fall by at most `dive` per second while a
@@ -58,6 +55,7 @@ class SharedToGo {
  public:
   SharedToGo(const Problem& problem, Members members, const chart::Chart& chart)
       : problem_{problem}, members_{members}, chart_{chart} {}
+  SharedToGo(const Problem&, Members, chart::Chart&&) = delete;  // it would be gone before the first search
   /// Precondition: there is a member.
   const ToGo& get(Purse& purse);
 

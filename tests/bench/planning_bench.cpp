@@ -7,19 +7,21 @@
 #include <cstdio>
 #include <ctime>
 #include <random>
+#include <string_view>
 #include <vector>
 
 #include "core/ocean/gridded.hpp"
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/registry.hpp"
+#include "tests/bench/case_suite.hpp"
 #include "tests/support/fields.hpp"
 
 // The 650 km case of product.md 10: a field of 1/20° with eddies of 28–62 km radius, static or hourly over three days, M = 18,
 // stints of 8 h, one thread. The hourly field is held after its third day, as a mission does by default; a way of 650 km
 // takes weeks. The peer is a plain scalar bilinear loop over interleaved floats, over places that the search evaluates
 // in the search's order: what its current evaluations alone would cost. Both are timed alternately in one run; main
-// prints the table.
+// prints the table, unless single benchmarks are asked for (--benchmark_filter=…): then nothing else runs, for a profiler.
 
 using namespace glidehelm;
 
@@ -190,6 +192,24 @@ void whole_answer_650_km(benchmark::State& state) {
 }
 BENCHMARK(whole_answer_650_km)->ArgName("hourly")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
 
+/// The second static case of the suite: six islands, a margin of 2 km, U = 0.4 m/s.
+const suite::Case& among_islands() {
+  static const auto cases = suite::static_cases(MetresPerSecond{0.4}, 2);
+  return cases.back();
+}
+void cts_astar_among_islands(benchmark::State& state) {
+  const auto& c = among_islands();
+  for (auto _ : state) benchmark::DoNotOptimize(planning::search(c.problem, c.ocean(), c.chart(), {}));
+}
+BENCHMARK(cts_astar_among_islands)->Unit(benchmark::kMillisecond);
+void whole_answer_among_islands(benchmark::State& state) {
+  const auto& c = among_islands();
+  const auto best = planning::planner_named("best");
+  const std::array<ocean::Ocean, 1> members{c.ocean()};
+  for (auto _ : state) benchmark::DoNotOptimize(best->plan(c.problem, members, c.chart(), {}, {}));
+}
+BENCHMARK(whole_answer_among_islands)->Unit(benchmark::kMillisecond);
+
 /// Wall and processor seconds; the ratio is of processor time, so that a busy machine does not spoil it.
 struct Took {
   double wall{1e9}, processor{1e9};
@@ -275,8 +295,11 @@ void print_guidances(bool hourly) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  const bool all = std::none_of(
+      argv, argv + argc, [](const char* word) { return std::string_view{word}.starts_with("--benchmark_filter"); });
   benchmark::Initialize(&argc, argv);
   benchmark::RunSpecifiedBenchmarks();
+  if (!all) return 0;
   std::printf("650 km, M = 18, stints of 8 h, U = 0.3 m/s, currents up to %.2f m/s\n",
               setting(false).field.fastest().si());
   for (const bool hourly : {false, true})

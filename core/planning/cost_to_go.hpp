@@ -8,8 +8,8 @@
 namespace glidehelm::planning {
 
 /// The least time that is left to the goal, from everywhere: a potential on a fine lattice around start and goal, whose rim is told by one on a
-/// lattice three times as coarse that reaches four times as far, whose rim is told by the distance over U + |c|max (docs/decisions/032). O(n log n) in
-/// the nodes, some 10^4 of them.
+/// lattice three times as coarse that reaches four times as far beyond start and goal, whose rim is told by the distance over U + |c|max
+/// (docs/decisions/032). O(n log n) in the nodes, some 10^4 of them.
 class CostToGo {
  public:
   CostToGo(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart);

@@ -17,7 +17,7 @@ double swollen(const Hull& hull, const WaterLayer& water, double pressure_pa) {
 }
 
 double displaced(const Hull& hull, const WaterColumn& water, Metres depth) {
-  return hull.volume_m3 * swollen(hull, water.at(depth), pressure_at(depth));
+  return hull.volume_m3 * swollen(hull, water.at(depth), ocean::pressure_at(depth));
 }
 
 double mass_of(const Hull& hull, const WaterColumn& water) {

@@ -6,10 +6,12 @@
 
 #include "core/base/expected.hpp"
 #include "core/base/units.hpp"
-#include "core/vehicle/seawater.hpp"
+#include "core/ocean/seawater.hpp"
 
 /// The glider as a body: how fast it glides for what its pump moves (Thesis 2.2.3; Merckelbach, Smeed & Griffiths 2010).
 namespace glidehelm::vehicle {
+
+using ocean::WaterColumn, ocean::WaterLayer, ocean::kGravity;
 
 /// What a hull is (Thesis Table 2.1). The defaults are in the range that is published for Slocum gliders; a team's own values come
 /// from its flight-model calibration.
@@ -66,7 +68,8 @@ struct Trim {
   friend bool operator==(const Trim&, const Trim&) = default;
 };
 
-/// A body, how it is trimmed, and the water it is in (empty: WaterColumn::climatological).
+/// A body, how it is trimmed, and the water it is in. Without water `column` is WaterColumn::climatological; a mission's body is then put
+/// into the forecast's, where that has one (mission::in_water).
 struct FlightModel {
   Hull hull;
   Trim trim;

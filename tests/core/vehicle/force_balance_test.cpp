@@ -23,34 +23,6 @@ Hull stiff_hull() {
 
 }  // namespace
 
-TEST_CASE("the density of sea water is that of the tables of UNESCO 1981") {
-  // Check values of the international equation of state, printed to 1e-5 kg/m³.
-  CHECK(sea_water_density(0, 5, 0) == Approx(999.96675).margin(6e-6));
-  CHECK(sea_water_density(0, 5, 1000e5) == Approx(1044.12802).margin(6e-6));
-  CHECK(sea_water_density(0, 25, 0) == Approx(997.04796).margin(6e-6));
-  CHECK(sea_water_density(35, 5, 0) == Approx(1027.67547).margin(6e-6));
-  CHECK(sea_water_density(35, 25, 0) == Approx(1023.34306).margin(6e-6));
-  CHECK(sea_water_density(35, 5, 1000e5) == Approx(1069.48914).margin(6e-6));
-  CHECK(sea_water_density(35, 25, 1000e5) == Approx(1062.53817).margin(6e-6));
-}
-
-TEST_CASE("pressure follows the standard ocean to 0.3 percent down to 2000 m") {
-  // Saunders & Fofonoff (1976) as in UNESCO (1983): depth in m from pressure in dbar at 45°, whose gravity at the surface is 9.80617.
-  for (const double p : {10.0, 100.0, 500.0, 1000.0, 1500.0, 2020.0}) {
-    const double depth = p * (9.72659 + p * (-2.2512e-5 + p * (2.279e-10 - p * 1.82e-15))) / (9.80617 + 1.092e-6 * p);
-    CHECK(pressure_at(Metres{depth}) == Approx(p * 1e4).epsilon(3e-3));
-  }
-}
-
-TEST_CASE("a water column is linear between its layers and held beyond them") {
-  const WaterColumn water{{{Metres{10}, 20, 36}, {Metres{110}, 10, 35}}};
-  CHECK(water.at(Metres{0}).temperature_c == 20);
-  CHECK(water.at(Metres{60}).temperature_c == Approx(15));
-  CHECK(water.at(Metres{60}).salinity == Approx(35.5));
-  CHECK(water.at(Metres{500}).temperature_c == 10);
-  CHECK(water.density(Metres{500}) == sea_water_density(35, 10, pressure_at(Metres{500})));
-}
-
 TEST_CASE("the angle of attack solves the balance of lift and drag, and the pitch leads back to it") {
   const Hull hull;
   for (const double pitch : {15.0, 26.0, 35.0, 60.0, 85.0}) {

@@ -1,9 +1,9 @@
-#include "core/vehicle/seawater.hpp"
+#include "core/ocean/seawater.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace glidehelm::vehicle {
+namespace glidehelm::ocean {
 
 double sea_water_density(double salinity, double temperature_c, double pressure_pa) {
   // Coefficients and their order as in UNESCO (1981), Tenth report of the joint panel on oceanographic tables and standards: the
@@ -24,10 +24,32 @@ double sea_water_density(double salinity, double temperature_c, double pressure_
   return at_surface / (1 - p / (stiffness + p * (by_pressure + p * by_square)));
 }
 
+double adiabatic_lapse_rate(double salinity, double temperature_c, double pressure_pa) {
+  const double t = temperature_c, s = salinity - 35, p = pressure_pa / 1e4;  // the polynomial counts in decibars
+  const double at_surface =
+      3.5803e-5 + t * (8.5258e-6 + t * (-6.836e-8 + t * 6.6228e-10)) + s * (1.8932e-6 - t * 4.2393e-8);
+  const double by_pressure =
+      1.8741e-8 + t * (-6.7795e-10 + t * (8.733e-12 - t * 5.4481e-14)) + s * (-1.1351e-10 + t * 2.7759e-12);
+  const double by_square = -4.6206e-13 + t * (1.8676e-14 - t * 2.1687e-16);
+  return (at_surface + p * (by_pressure + p * by_square)) / 1e4;
+}
+
+double in_situ_temperature(double salinity, double theta_c, double pressure_pa) {
+  const double p = pressure_pa;
+  const auto rate = [&](double t, double at) { return adiabatic_lapse_rate(salinity, t, at); };
+  const double a = rate(theta_c, 0), b = rate(theta_c + 0.5 * p * a, 0.5 * p), c = rate(theta_c + 0.5 * p * b, 0.5 * p),
+               d = rate(theta_c + p * c, p);
+  return theta_c + p / 6 * (a + 2 * b + 2 * c + d);
+}
+
 double pressure_at(Metres depth) {
   constexpr double kDensity = 1027, kCompressed = 4.4e-10;
   const double even = kDensity * kGravity * depth.si();
   return even * (1 + 0.5 * kCompressed * even);
+}
+
+bool plausible(const WaterLayer& water) {
+  return water.temperature_c >= -3 && water.temperature_c <= 45 && water.salinity >= 0 && water.salinity <= 45;
 }
 
 WaterColumn WaterColumn::climatological() {
@@ -57,4 +79,4 @@ double WaterColumn::density(Metres depth) const {
   return sea_water_density(water.salinity, water.temperature_c, pressure_at(depth));
 }
 
-}  // namespace glidehelm::vehicle
+}  // namespace glidehelm::ocean

@@ -156,6 +156,18 @@ Sha256 provenance_of(const std::vector<ForecastSource>& sources, const Seams& se
 
 }  // namespace
 
+GridWater water_of(const std::vector<ForecastSource>& sources) {
+  GridWater found;
+  for (const auto& source : sources) {
+    const auto& water = source.grid.facts.water;
+    if (water.layers.empty() && (water.words.empty() || !found.words.empty())) continue;
+    found = water;
+    if (sources.size() > 1) found.words = "source '" + source.name + "': " + water.words;
+    if (!found.layers.empty()) break;
+  }
+  return found;
+}
+
 Expected<Forecast, ForecastError> Forecast::prepare(const GridView& grid, const DiveProfile& profile,
                                                     const GriddedOptions& options,
                                                     std::shared_ptr<const void> keep_alive,
@@ -202,6 +214,7 @@ Expected<Forecast, ForecastError> Forecast::prepare(const std::vector<ForecastSo
   for (const auto& field : added) parts->analytic.push_back(field.within({box.south, box.north, box.west, box.east}));
   if (!added.empty()) facts.name += " + " + names_of(added);
   facts.provenance = provenance_of(sources, seams, added);
+  facts.water = water_of(sources);
   parts->add_up();
   return Forecast{std::move(parts)};
 }

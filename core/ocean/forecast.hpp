@@ -23,6 +23,7 @@ struct ForecastFacts {
   Sha256 provenance;                                             ///< over everything that went in
   std::vector<std::string> sources;                              ///< names, most trusted first; empty without `sources`
   std::vector<std::string> warnings;
+  GridWater water;  ///< of the most trusted source that has one
 };
 
 /// Why numbers are no forecast to plan on.
@@ -41,6 +42,9 @@ struct ForecastSource {
   SourceRegion region{};
   double from_s{-1e18}, to_s{1e18};  ///< epoch seconds
 };
+
+/// The water of the most trusted source that has one; without any, what is said of why.
+GridWater water_of(const std::vector<ForecastSource>& sources);
 
 /// One forecast, prepared for planning: the mean over the dive profile that moves a diving glider, the shallowest current
 /// that moves a drifting one, and the full field that the verifier flies in. A value: copies share the fields, which are

@@ -15,7 +15,6 @@ static_assert(std::endian::native == std::endian::little,
 namespace {
 
 constexpr std::string_view kMagic = "GLHGRID1";
-constexpr std::uint32_t kVersion = kGridVersion;
 constexpr std::size_t kFixedHeader = 96;
 constexpr std::size_t kCrcOffset = 16;
 constexpr std::size_t kHeaderAtMost = 256U << 20;
@@ -166,6 +165,34 @@ std::optional<GridError> fault_of_runs(const std::vector<NodeRun>& runs, const f
   return std::nullopt;
 }
 
+void read_water(Cursor& cursor, GridWater& water) {
+  const auto count = cursor.take<std::uint32_t>();
+  for (std::uint32_t i = 0; i < count && !cursor.failed(); ++i) {
+    WaterLayer layer;
+    layer.depth = Metres{cursor.take<double>()};
+    layer.temperature_c = cursor.take<double>();
+    layer.salinity = cursor.take<double>();
+    water.layers.push_back(layer);
+  }
+  water.words = cursor.text();
+}
+void put_water(std::string& out, const GridWater& water) {
+  put(out, static_cast<std::uint32_t>(water.layers.size()));
+  for (const auto& layer : water.layers)
+    for (const double value : {layer.depth.si(), layer.temperature_c, layer.salinity}) put(out, value);
+  put_text(out, water.words);
+}
+std::optional<GridError> fault_of_water(const GridWater& water) {
+  std::vector<double> depths;
+  for (const auto& layer : water.layers) {
+    if (!plausible(layer))
+      return GridError{"layer " + std::to_string(depths.size()) + " has a temperature or salinity that no sea has",
+                       "water"};
+    depths.push_back(layer.depth.si());
+  }
+  return fault_of_axis(depths, "water", -100, 12000);
+}
+
 void put_facts(std::string& out, const GridFacts& facts) {
   for (const std::string* text : {&facts.cycle, &facts.east_variable, &facts.north_variable, &facts.east_unit,
                                   &facts.north_unit, &facts.recognised_by, &facts.time_unit, &facts.layout})
@@ -203,7 +230,7 @@ std::string write_grid(const Grid& grid) {
   const auto& axes = grid.axes;
   std::string header;
   header.append(kMagic);
-  put(header, kVersion);
+  put(header, kGridVersion);
   put(header, std::uint32_t{0});
   put(header, std::uint32_t{0});
   put(header, crc32c(std::as_bytes(std::span{grid.values})));
@@ -218,6 +245,7 @@ std::string write_grid(const Grid& grid) {
     for (const double value : *axis) put(header, value);
   put_facts(header, grid.facts);
   put_runs(header, grid.filled);
+  put_water(header, grid.facts.water);
   header.resize((header.size() + 63) / 64 * 64, '\0');
   const auto size = static_cast<std::uint32_t>(header.size());
   std::memcpy(header.data() + 12, &size, sizeof size);
@@ -236,8 +264,9 @@ Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes) {
   if (reinterpret_cast<std::uintptr_t>(bytes.data()) % alignof(float) != 0)
     return fault("the bytes are not aligned", "header");
   Cursor fixed{bytes.subspan(kMagic.size())};
-  if (const auto version = fixed.take<std::uint32_t>(); version != kVersion)
-    return fault("version " + std::to_string(version) + ", allowed is " + std::to_string(kVersion), "header");
+  const auto version = fixed.take<std::uint32_t>();
+  if (version != kGridVersion && version != kGridVersionWithoutWater)
+    return fault("version " + std::to_string(version) + ", allowed is " + std::to_string(kGridVersion), "header");
   const auto header_size = fixed.take<std::uint32_t>();
   const auto header_crc = fixed.take<std::uint32_t>();
   const auto payload_crc = fixed.take<std::uint32_t>();
@@ -277,12 +306,15 @@ Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes) {
   view.axes.lons_deg = cursor.doubles(counts[3]);
   read_facts(cursor, view.facts);
   read_runs(cursor, view.filled);
+  if (version == kGridVersion) read_water(cursor, view.facts.water);
   if (cursor.failed()) return fault("axes or texts run beyond it", "header");
   if (auto bad = fault_of_axes(view.axes)) return unexpected(std::move(*bad));
   if (!view.axes.has_time && counts[0] != 1) return fault("several times without a time axis", "times");
   if (!view.axes.has_depth && counts[1] != 1) return fault("several depths without a depth axis", "depths");
   if (view.provenance != provenance_of(view.facts.sources))
     return fault("the hash is not that of the sources", "header");
+
+  if (auto bad = fault_of_water(view.facts.water)) return unexpected(std::move(*bad));
 
   const auto payload = bytes.subspan(header_size);
   if (crc32c(payload) != payload_crc) return fault("the checksum is wrong", "payload");

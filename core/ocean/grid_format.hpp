@@ -9,6 +9,7 @@
 
 #include "core/base/expected.hpp"
 #include "core/base/hash.hpp"
+#include "core/ocean/seawater.hpp"
 
 /// The flat grid: what `glidehelm-ingest` writes and everybody else maps.
 ///
@@ -16,7 +17,7 @@
 ///
 ///     offset  size  field
 ///          0     8  magic "GLHGRID1"
-///          8     4  version (4)
+///          8     4  version (5; 4, which has no water, is read too)
 ///         12     4  bytes of the whole header (a multiple of 64): the payload begins there
 ///         16     4  CRC-32C of the header, computed with this field zero
 ///         20     4  CRC-32C of the payload
@@ -29,20 +30,28 @@
 ///         96     …  doubles: times (epoch seconds), depths (m, positive down), latitudes, longitudes (degrees)
 ///          …     …  texts: each a 32-bit length and its bytes; see GridFacts
 ///          …     …  filled nodes: their number of runs (32 bits), then each run's first node and length (64 bits each)
+///          …     …  water: its number of layers (32 bits), each layer's depth (m), temperature (°C) and salinity (doubles), and a text
 ///     header     …  float (east, north) in m/s, interleaved, [time][depth][latitude][longitude]; NaN = no value
 ///
 /// All axes ascend. Longitudes are unwrapped (170 … 190 across the antimeridian), begin in [−180, 180) and span less
 /// than 360. Either both components of a node are finite or both are NaN.
 namespace glidehelm::ocean {
 
-/// Version of the layout; another version is another file.
-inline constexpr std::uint32_t kGridVersion = 4;
+/// Version of the layout; another version is another file, but for one.
+inline constexpr std::uint32_t kGridVersion = 5, kGridVersionWithoutWater = 4;
 
 /// One file that went into a grid.
 struct GridSource {
   std::string name;
   Sha256 hash;
   friend bool operator==(const GridSource&, const GridSource&) = default;
+};
+
+/// Temperature and salinity of a forecast as one column, a mean over its area and times: what a glider is weighed in.
+struct GridWater {
+  std::vector<WaterLayer> layers;  ///< from the top; empty: none
+  std::string words;               ///< of which variables it was made, or why there is none; empty: nobody looked
+  friend bool operator==(const GridWater&, const GridWater&) = default;
 };
 
 /// What a person wants to know about a grid beside its numbers.
@@ -56,6 +65,7 @@ struct GridFacts {
   std::string layout;                 ///< how the file's own grid was brought onto this one; empty: it is this one
   std::vector<GridSource> sources;    ///< in the order of the arguments
   std::vector<std::string> warnings;
+  GridWater water;
 };
 
 /// Axes of a grid. Without a time (depth) axis the vector holds one value that means nothing.
@@ -109,7 +119,8 @@ struct GridView {
 std::string write_grid(const Grid& grid);
 
 /// Believes nothing: magic, version, sizes (with overflow), checksums, texts, ascending finite axes in range, span of the
-/// longitudes, that every value is finite or half of a pair of NaN, and that filled nodes exist and have values. One pass over the payload. The bytes must be
+/// longitudes, that every value is finite or half of a pair of NaN, that filled nodes exist and have values, and that the water is one that
+/// a sea can have. One pass over the payload. The bytes must be
 /// aligned to four (a mapping and the heap are).
 Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes);
 

@@ -133,3 +133,20 @@ TEST_CASE("what the options change is said") {
   CHECK(forecast->facts().warnings.size() == 3);
   CHECK(forecast->facts().warnings[1] == "no coastline: the model's mask is taken as land");
 }
+
+TEST_CASE("a forecast has the water of its most trusted source that has one") {
+  Grid bay = deep(), globe = deep();
+  bay.facts.water.words = "temp and salt are not used: they are of one depth only";
+  globe.facts.water = {{{Metres{0}, 20, 36}, {Metres{100}, 15, 35.5}}, "thetao and so"};
+  const auto water_over = [](const Grid& first, const Grid& second) {
+    return water_of(
+        {ForecastSource{"bay", view_of(first), {}, nullptr}, ForecastSource{"globe", view_of(second), {}, nullptr}});
+  };
+  CHECK(water_over(bay, globe) == GridWater{globe.facts.water.layers, "source 'globe': thetao and so"});
+  CHECK(water_over(globe, bay).words == "source 'bay': thetao and so");
+  CHECK(water_over(bay, bay) == GridWater{{}, "source 'bay': temp and salt are not used: they are of one depth only"});
+  CHECK(water_over(deep(), deep()) == GridWater{});
+  const auto alone = Forecast::prepare(view_of(globe), kPlain, {}, nullptr);
+  REQUIRE(alone);
+  CHECK(alone->facts().water == globe.facts.water);
+}

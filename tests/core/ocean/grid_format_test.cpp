@@ -25,6 +25,7 @@ Grid small() {
   grid.facts.time_unit = "hours since 1950-01-01";
   grid.facts.sources = {{"a.nc", Sha256::of("a")}, {"b.nc", Sha256::of("b")}};
   grid.facts.warnings = {"first", ""};
+  grid.facts.water = {{{Metres{0.5}, 21.25, 36.5}, {Metres{10}, 1.0 / 3, 35}}, "temp and salt"};
   grid.filled = {{2, 3}, {9, 1}};
   return grid;
 }
@@ -61,6 +62,7 @@ TEST_CASE("a grid comes back from its bytes as it was written") {
   CHECK(view->facts.time_unit == "hours since 1950-01-01");
   CHECK(view->facts.sources == grid.facts.sources);
   CHECK(view->facts.warnings == grid.facts.warnings);
+  CHECK(view->facts.water == grid.facts.water);
   CHECK(view->filled == grid.filled);
   CHECK(view->provenance == provenance_of(grid.facts.sources));
   CHECK(std::memcmp(view->values, grid.values.data(), grid.values.size() * sizeof(float)) == 0);
@@ -161,6 +163,49 @@ TEST_CASE("filled nodes that do not exist, overlap or have no value are not beli
     REQUIRE_FALSE(view);
     CHECK(view.error().where == "filled nodes");
   }
+}
+
+TEST_CASE("a grid of the layout before, which ends without water, is read") {
+  Grid grid = small();
+  grid.facts.water = {};
+  // The water of a grid without any is eight zero bytes at the end of the header: as good as its padding.
+  std::string bytes = write_grid(grid);
+  const std::uint32_t before = kGridVersionWithoutWater;
+  std::memcpy(bytes.data() + 8, &before, 4);
+  seal(bytes);
+  const auto view = open_grid(bytes_of(bytes));
+  REQUIRE(view);
+  CHECK(view->axes == grid.axes);
+  CHECK(view->filled == grid.filled);
+  CHECK(view->facts.water == GridWater{});
+  const std::uint32_t unknown = kGridVersionWithoutWater - 1;
+  std::memcpy(bytes.data() + 8, &unknown, 4);
+  seal(bytes);
+  CHECK_FALSE(open_grid(bytes_of(bytes)));
+}
+
+TEST_CASE("water that no sea has, or whose depths do not ascend, is refused") {
+  const double nan = std::nan("");
+  for (const auto& layers :
+       {std::vector<WaterLayer>{{Metres{0}, 45.5, 35}}, std::vector<WaterLayer>{{Metres{0}, -3.5, 35}},
+        std::vector<WaterLayer>{{Metres{0}, 10, 45.5}}, std::vector<WaterLayer>{{Metres{0}, 10, -0.5}},
+        std::vector<WaterLayer>{{Metres{0}, nan, 35}}, std::vector<WaterLayer>{{Metres{0}, 10, nan}},
+        std::vector<WaterLayer>{{Metres{nan}, 10, 35}},
+        std::vector<WaterLayer>{{Metres{5}, 10, 35}, {Metres{5}, 9, 35}}}) {
+    Grid grid = small();
+    grid.facts.water.layers = layers;
+    const auto view = open_grid(bytes_of(write_grid(grid)));
+    REQUIRE_FALSE(view);
+    CHECK(view.error().where == "water");
+  }
+  // A number of layers that the header does not hold.
+  std::string bad = write_grid(small());
+  const auto text = bad.find("temp and salt");
+  REQUIRE(text != std::string::npos);
+  const std::uint32_t many = 0xffffffff;
+  std::memcpy(bad.data() + text - 4 - 2 * 24 - 4, &many, 4);
+  seal(bad);
+  CHECK_FALSE(open_grid(bytes_of(bad)));
 }
 
 TEST_CASE("marks become runs and say the same") {

@@ -249,6 +249,7 @@ void clean_words(ocean::GridFacts& facts) {
                             &facts.north_unit, &facts.recognised_by, &facts.time_unit, &facts.layout})
     *text = one_line(*text);
   for (auto& warning : facts.warnings) warning = one_line(warning);
+  facts.water.words = one_line(facts.water.words);
 }
 
 int run(const Arguments& arguments) {

@@ -22,6 +22,7 @@ Result<Part> paired(Part east, const Part& north) {
   for (const auto& warning : other.warnings)
     if (std::find(facts.warnings.begin(), facts.warnings.end(), warning) == facts.warnings.end())
       facts.warnings.push_back(warning);
+  if (facts.water.layers.empty()) facts.water = other.water;
   facts.recognised_by += ", with " + std::string{base_name(north.file)};
   const std::string names = east.file + " with " + std::string{base_name(north.file)};
   if (auto plausible = make_plausible(grid, facts.warnings); !plausible)

@@ -188,6 +188,35 @@ std::vector<std::string> gathered_warnings(const std::vector<Part>& parts) {
   return warnings;
 }
 
+/// The mean of the parts' columns, each counting for its times, down to where the shortest ends; those without one do not count.
+ocean::GridWater joined_water(const std::vector<Part>& parts) {
+  ocean::GridWater joined;
+  double all = 0;
+  std::size_t counted = 0;
+  for (const auto& part : parts) {
+    const auto& water = part.grid.facts.water;
+    if (water.layers.empty()) {
+      if (all == 0 && joined.words.empty()) joined.words = water.words;
+      continue;
+    }
+    ++counted;
+    const auto times = static_cast<double>(part.grid.axes.times_s.size());
+    all += times;
+    if (all == times) {
+      joined = water;
+      continue;
+    }
+    auto& layers = joined.layers;
+    layers.resize(std::min(layers.size(), water.layers.size()));
+    for (std::size_t k = 0; k < layers.size(); ++k) {
+      layers[k].temperature_c += times / all * (water.layers[k].temperature_c - layers[k].temperature_c);
+      layers[k].salinity += times / all * (water.layers[k].salinity - layers[k].salinity);
+    }
+  }
+  if (counted > 1) joined.words += "; the mean of " + std::to_string(counted) + " such files";
+  return joined;
+}
+
 }  // namespace
 
 Result<ocean::Grid> join(std::vector<Part> parts) {
@@ -205,6 +234,7 @@ Result<ocean::Grid> join(std::vector<Part> parts) {
   const auto order = oldest_first(parts);
   ocean::Grid grid{parts[0].grid.axes, parts[order.back()].grid.facts, {}};
   grid.facts.warnings = gathered_warnings(parts);
+  grid.facts.water = joined_water(parts);
   grid.facts.sources.clear();
   for (const auto& part : parts)
     for (const auto& source : part.grid.facts.sources)  // a grid file belongs to many parts, and is named once

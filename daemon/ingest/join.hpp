@@ -17,7 +17,7 @@ namespace glidehelm::ingest {
 /// the overlap, where that is shorter) its weight rises as s(x) = x²(3 − 2x) from the older cycle's value, and where the older one goes on
 /// after it, it falls in the same way before its end; so the joint adds at most 1.5·|difference|/6 h to the rate of change (decision 019).
 /// Cycles are laid over each other from the oldest up. Numbers that are equal in both stay as they are, bit by bit; a node that one of
-/// the two has not is the newest one's.
+/// the two has not is the newest one's. The water is the mean of the parts' columns, each for its times.
 Result<ocean::Grid> join(std::vector<Part> parts);
 
 }  // namespace glidehelm::ingest

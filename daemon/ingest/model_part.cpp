@@ -10,6 +10,8 @@
 #include "core/base/units.hpp"
 #include "daemon/ingest/component.hpp"
 #include "daemon/ingest/model_levels.hpp"
+#include "daemon/ingest/model_planes.hpp"
+#include "daemon/ingest/model_water.hpp"
 #include "daemon/ingest/recognise.hpp"
 
 namespace glidehelm::ingest {
@@ -17,41 +19,6 @@ namespace glidehelm::ingest {
 namespace {
 
 constexpr double kNodesAtMost = 5e8;  // 4 GB of floats, beside which the planes of one time are small
-
-/// The rectangle of centres that is read.
-struct Window {
-  std::size_t row{}, rows{}, column{}, columns{};
-};
-
-/// The rows and columns with a point in the area, and two more on each side.
-Result<Window> window_of(const Mesh& mesh, const std::optional<Area>& area) {
-  if (!area || area->east - area->west >= 359) return Window{0, mesh.rows, 0, mesh.columns};
-  const double middle = 0.5 * (area->west + area->east), half = 0.5 * (area->east - area->west);
-  std::size_t low_j = mesh.rows, high_j = 0, low_i = mesh.columns, high_i = 0;
-  for (std::size_t j = 0; j < mesh.rows; ++j)
-    for (std::size_t i = 0; i < mesh.columns; ++i) {
-      const std::size_t at = mesh.index(j, i);
-      const bool inside = mesh.lat[at] >= area->south && mesh.lat[at] <= area->north &&
-                          std::abs(fold_degrees(mesh.lon[at] - middle)) <= half;
-      if (!inside) continue;
-      low_j = std::min(low_j, j), high_j = std::max(high_j, j);
-      low_i = std::min(low_i, i), high_i = std::max(high_i, i);
-    }
-  if (low_j == mesh.rows) return fault("no point of the grid lies in the area asked for");
-  constexpr std::size_t kMore = 2;
-  const std::size_t row = low_j > kMore ? low_j - kMore : 0, column = low_i > kMore ? low_i - kMore : 0;
-  return Window{row, std::min(high_j + kMore + 1, mesh.rows) - row, column,
-                std::min(high_i + kMore + 1, mesh.columns) - column};
-}
-
-template <class T>
-std::vector<T> cut_out(const std::vector<T>& whole, std::size_t columns, const Window& w) {
-  std::vector<T> part;
-  part.reserve(w.rows * w.columns);
-  for (std::size_t j = 0; j < w.rows; ++j)
-    for (std::size_t i = 0; i < w.columns; ++i) part.push_back(whole[(w.row + j) * columns + w.column + i]);
-  return part;
-}
 
 /// The faces that a window of centres needs, as a window of the faces.
 struct FaceWindow {
@@ -73,71 +40,6 @@ FaceWindow faces_of(const Faces& whole, const Window& w) {
   return f;
 }
 
-/// Water and land of one set of points: one plane, or one per level; empty when the files have no mask.
-struct Mask {
-  std::vector<std::uint8_t> wet;  ///< whole shape of the file
-  std::size_t levels{1};
-  Found from;
-};
-Result<Mask> mask_of(const ModelFiles& files, std::initializer_list<std::string_view> names, const Shape& shape,
-                     std::size_t levels) {
-  for (const auto name : names) {
-    const Found found = files.find(name);
-    if (!found || shape_of(found) != shape) continue;
-    const auto values = plain_numbers(found);
-    if (!values) return unexpected(values.error());
-    const std::size_t plane = shape.rows * shape.columns;
-    if (values->size() != plane && values->size() != plane * levels) continue;
-    Mask mask{std::vector<std::uint8_t>(values->size()), values->size() / plane, found};
-    for (std::size_t k = 0; k < values->size(); ++k) {
-      const double value = (*values)[k];
-      if (!std::isnan(value) && value != 0 && value != 1)
-        return fault("mask " + found.variable->name + " holds " + printed("%.6g", value) +
-                     ", allowed is 0 (land) and 1 (water)");
-      mask.wet[k] = value == 1 ? 1 : 0;
-    }
-    return mask;
-  }
-  return Mask{};
-}
-std::vector<std::uint8_t> plane_of(const Mask& mask, std::size_t level, const Shape& shape, const Window& w) {
-  if (mask.wet.empty()) return {};
-  const std::size_t plane = shape.rows * shape.columns, first = mask.levels > 1 ? level * plane : 0;
-  const auto begin = mask.wet.begin() + static_cast<std::ptrdiff_t>(first);
-  return cut_out(std::vector<std::uint8_t>(begin, begin + static_cast<std::ptrdiff_t>(plane)), shape.columns, w);
-}
-
-/// One component: how it is read, and where its dimensions are.
-struct Side {
-  Found found;
-  Component component;
-  Splitting split;
-  Window at;
-};
-
-/// All levels of one time, level by level; `outside` grows by the values beyond the valid range, which are kept.
-Result<std::vector<std::vector<double>>> read_levels(const Side& part, std::size_t time, std::size_t levels,
-                                                     std::size_t& outside) {
-  const auto& variable = *part.found.variable;
-  const std::size_t rank = variable.dimensions.size();
-  std::vector<std::size_t> start(rank, 0), count(rank, 1);
-  start[rank - 2] = part.at.row, count[rank - 2] = part.at.rows;
-  start[rank - 1] = part.at.column, count[rank - 1] = part.at.columns;
-  if (part.split.time) start[*part.split.time] = time;
-  std::vector<std::vector<double>> planes;
-  for (std::size_t k = 0; k < levels; ++k) {
-    if (part.split.level) start[*part.split.level] = k;
-    auto stored = part.found.file->read(variable, start, count);
-    if (!stored) return unexpected(stored.error());
-    for (double& value : *stored) {
-      outside += part.component.outside_valid(value) ? 1U : 0U;
-      value = part.component(value);
-    }
-    planes.push_back(std::move(*stored));
-  }
-  return planes;
-}
-
 /// Everything that stays the same from time to time.
 struct Job {
   Side u, v;
@@ -157,8 +59,8 @@ struct Job {
 
 /// Centres of both components of one level, turned to east and north.
 struct Planes {
-  std::size_t outside_u{}, outside_v{};          ///< values beyond the valid range
-  std::vector<std::vector<double>> east, north;  ///< per level of the file
+  std::size_t outside_u{}, outside_v{};  ///< values beyond the valid range
+  LevelPlanes east, north;               ///< per level of the file
 };
 
 std::vector<std::uint8_t> open_plane(const Job& job, const Mask& mask, const FaceWindow& faces, std::size_t level) {
@@ -195,38 +97,6 @@ Result<Planes> planes_at(const Job& job, std::size_t time) {
     }
   }
   return Planes{outside_u, outside_v, std::move(*u), std::move(*v)};
-}
-
-/// From the levels of the file to the depths of the grid, column by column.
-Result<Planes> at_fixed_depths(const Job& job, const Planes& in, std::size_t time) {
-  const std::size_t points = job.window.rows * job.window.columns, levels = job.levels.count;
-  auto zeta = surface_at(job.levels, time);
-  if (!zeta) return unexpected(zeta.error());
-  Planes out;
-  out.east.assign(job.depths.size(), std::vector<double>(points, kNaN));
-  out.north = out.east;
-  std::vector<double> depths(levels), east(levels), north(levels);
-  Column column;
-  const std::size_t columns = job.grid.centres.columns;
-  for (std::size_t n = 0; n < points; ++n) {
-    const std::size_t whole =
-        (job.window.row + n / job.window.columns) * columns + job.window.column + n % job.window.columns;
-    const double h = job.levels.h[whole];
-    double surface = zeta->empty() ? 0.0 : (*zeta)[whole];
-    if (std::isnan(surface)) surface = 0;
-    if (!(h + surface > 0)) continue;  // land, or fallen dry
-    for (std::size_t k = 0; k < levels; ++k) {
-      depths[k] = job.levels.terrain->depth(k, h, surface);
-      east[k] = in.east[k][n];
-      north[k] = in.north[k][n];
-    }
-    column.set(depths, h + surface);
-    for (std::size_t z = 0; z < job.depths.size(); ++z) {
-      out.east[z][n] = column.at(job.depths[z], east);
-      out.north[z][n] = column.at(job.depths[z], north);
-    }
-  }
-  return out;
 }
 
 /// Points that are exactly 0, 0 on every level of every time are land, when the files mark land in no other way.
@@ -375,22 +245,6 @@ Result<Done> settle_windows(Job& job, const ReadOptions& options) {
   return Done{};
 }
 
-/// Terrain-following levels: fixed depths as far down as the water of the window reaches, whatever the surface does, so that
-/// all times and files of a model have the same.
-void settle_depths(Job& job) {
-  job.depths = job.levels.depths;
-  if (!job.levels.terrain) return;
-  const Shape whole{job.grid.centres.rows, job.grid.centres.columns};
-  const auto h = cut_out(job.levels.h, whole.columns, job.window);
-  const auto wet = plane_of(job.wet, 0, whole, job.window);
-  double deepest = 0;
-  for (std::size_t n = 0; n < h.size(); ++n)
-    if (h[n] > deepest && (wet.empty() || wet[n] != 0)) deepest = h[n];
-  job.depths = fixed_depths(deepest);
-  job.levels.words +=
-      ", brought onto " + std::to_string(job.depths.size()) + " depths to " + printed("%.0f m", job.depths.back());
-}
-
 Result<Done> fill(const Job& job, const Remap& remap, ocean::Grid& grid) {
   const std::size_t plane = 2 * remap.nodes();
   grid.values.resize(2 * grid.axes.nodes());
@@ -401,8 +255,12 @@ Result<Done> fill(const Job& job, const Remap& remap, ocean::Grid& grid) {
     outside_u += planes->outside_u;
     outside_v += planes->outside_v;
     if (job.levels.terrain) {
-      planes = at_fixed_depths(job, *planes, job.times.source[t]);
-      if (!planes) return unexpected(planes.error());
+      const auto surface = surface_at(job.levels, job.times.source[t]);
+      if (!surface) return unexpected(surface.error());
+      auto deep = at_fixed_depths(job.levels, job.grid.centres.columns, job.window, *surface, job.depths,
+                                  {&planes->east, &planes->north});
+      planes->east = std::move(deep[0]);
+      planes->north = std::move(deep[1]);
     }
     for (std::size_t z = 0; z < job.depths.size(); ++z) {
       const std::size_t level = job.levels.order.empty() ? z : job.levels.order[z];
@@ -414,6 +272,15 @@ Result<Done> fill(const Job& job, const Remap& remap, ocean::Grid& grid) {
       grid.facts.warnings.push_back(std::to_string(outside) + " values of " + side->found.variable->name +
                                     " lie outside its valid range " + side->component.valid_text() + " and are kept");
   return Done{};
+}
+
+/// Terrain-following levels: fixed depths as far down as the water of the window reaches.
+void settle_depths(Job& job) {
+  const Shape whole{job.grid.centres.rows, job.grid.centres.columns};
+  job.depths = depths_of(job.levels, whole, job.window, plane_of(job.wet, 0, whole, job.window));
+  if (job.levels.terrain)
+    job.levels.words +=
+        ", brought onto " + std::to_string(job.depths.size()) + " depths to " + printed("%.0f m", job.depths.back());
 }
 
 /// Everything but the numbers: where they are, what they mean, where they go. Sets the units' warnings and the time unit.
@@ -514,6 +381,8 @@ Result<std::optional<ocean::Grid>> read_model(const ModelFiles& files, const Uni
   const auto remap = Remap::of(job->mesh, grid.axes.lats_deg, grid.axes.lons_deg);
   if (remap.inside() == 0) return fault("no node of the grid lies between the model's points");
   if (auto done = fill(*job, remap, grid); !done) return unexpected(done.error());
+  if (!options.only_time_s)
+    grid.facts.water = read_model_water(files, {job->grid.centres, job->window, job->wet}, units, options);
   tell(*job, pair, grid.facts);
   return std::optional{std::move(grid)};
 }

@@ -13,7 +13,7 @@ namespace glidehelm::ingest {
 /// Brings the velocity of `files` (the file of the currents first, then its partner and grid files) onto a rectilinear
 /// grid with fixed depths: averages staggered components to the centres, turns them to east and north, interpolates
 /// vertically in every column, maps horizontally (regrid.hpp). docs/decisions/018 states the errors. Sets axes, values,
-/// `layout`, `recognised_by`, variables, units and warnings.
+/// `layout`, `recognised_by`, variables, units, warnings and the water (model_water.hpp).
 ///
 /// Nothing when this is no such file (no velocity, or no positions in two dimensions, no staggering and no terrain-following
 /// levels): the plain reader's fault then counts. Refused: what regrid.hpp, vertical.hpp, curvilinear.hpp and grid_file.hpp

@@ -16,6 +16,7 @@
 #include "daemon/ingest/model_part.hpp"
 #include "daemon/ingest/plausible.hpp"
 #include "daemon/ingest/quality.hpp"
+#include "daemon/ingest/water.hpp"
 #include "daemon/ingest/whole_file.hpp"
 
 namespace glidehelm::ingest {
@@ -269,6 +270,8 @@ Result<Part> read_open_file(const std::string& name, const NetcdfFile& file, con
   Reading reading{file, units, options, part, grids, {}};
   if (auto read = read_somehow(reading, name); !read) return unexpected(read.error());
   part.grid.facts.sources = {{name, hash}};
+  if (part.grid.facts.layout.empty() && !options.only_time_s)
+    part.grid.facts.water = read_water(file, units, options, part.grid);
   if (!part.grid.facts.layout.empty())  // else no grid file had a part in it
     for (const auto& grid : grids) part.grid.facts.sources.push_back(grid.source);
   if (auto told = tell_member(part, file, options.member); !told) return unexpected(told.error());

@@ -63,7 +63,8 @@ struct Part {
 /// a field of more than 2e9 nodes, and what no sea can be (plausible.hpp). A file with one component only becomes half a
 /// part; a file without velocity but with heights of the sea surface becomes the geostrophic current, and its facts say
 /// "computed from heights". Files that are no rectilinear grid with depths (staggered, curvilinear, terrain-following) are
-/// brought onto one, with the help of `grids` (model_part.hpp).
+/// brought onto one, with the help of `grids` (model_part.hpp). Temperature and salinity beside the currents become the water of
+/// the facts (water.hpp); they refuse nothing.
 Result<Part> read_part(const std::string& name, std::span<const std::byte> bytes, const Units& units,
                        const ReadOptions& options, const std::vector<GridFile>& grids = {});
 

@@ -52,7 +52,8 @@ Fields<WaterLayer> layer_fields() {
   return f;
 }
 
-constexpr const char* kNoWater = "a middle-latitude ocean: 16 °C at the surface, 4 °C in the deep, salinity 35";
+constexpr const char* kNoWater =
+    "that of the forecast, else a middle-latitude ocean: 16 °C at the surface, 4 °C in the deep, salinity 35";
 
 void read_water(const At& at, FlightModel& model) {
   if (!expect_list(at, 1, std::numeric_limits<int>::max())) return;

@@ -9,6 +9,7 @@
 #include "config/currents.hpp"
 #include "config/flight_model.hpp"
 #include "config/yaml_reader/schema.hpp"
+#include "core/mission/in_water.hpp"
 
 namespace glidehelm::config {
 
@@ -18,7 +19,8 @@ using mission::Approval;
 using mission::Mission;
 
 constexpr double kHour = 3600.0, kMinute = 60.0, kKilometre = 1000.0;
-constexpr double kShortestStint_h = 0.1, kLongestStint_h = 72.0;
+constexpr double kShortestStint_h = mission::kShortestStint.count() / kHour,
+                 kLongestStint_h = mission::kLongestStint.count() / kHour;
 
 /// A mission as its file says it, before what depends on several keys is worked out.
 struct MissionDraft : Mission {
@@ -367,13 +369,6 @@ void resolve(MissionDraft& d, const std::string& file) {
 }
 
 }  // namespace
-
-Seconds stint_of_half_cycles(int half_cycles, const Mission& m) {
-  // Down from the surface, the inner legs, and up to the surface from where the last leg ends.
-  const Metres last = half_cycles % 2 == 0 ? m.climb_to : m.dive_depth;
-  const Metres vertical = m.dive_depth + (half_cycles - 1) * (m.dive_depth - m.climb_to) + last;
-  return vertical / (m.horizontal_speed * std::tan(m.glide_angle.si()));
-}
 
 Expected<MissionFile, std::vector<ConfigError>> read_mission_file(std::string_view text, const std::string& file,
                                                                   const LoadFile& load) {

@@ -40,8 +40,4 @@ Shape mission_shape();
 /// config/mission.schema.json.
 std::string mission_schema();
 
-/// Underwater time of a yo of `half_cycles` dives and climbs between `climb_to` and `dive_depth`, from the surface and
-/// back to it, at the vertical speed U·tan(glide angle) of a glider whose horizontal speed through water is U.
-Seconds stint_of_half_cycles(int half_cycles, const mission::Mission& mission);
-
 }  // namespace glidehelm::config

@@ -7,6 +7,13 @@
 #include "daemon/verify/values_json.hpp"
 
 // The members of each type stand in its own namespace, where the shared JSON of values finds them.
+namespace glidehelm::ocean {
+template <class F>
+void members(WaterLayer& l, F&& f) {
+  f("depth_m", l.depth), f("temperature_c", l.temperature_c), f("salinity", l.salinity);
+}
+}  // namespace glidehelm::ocean
+
 namespace glidehelm::vehicle {
 template <class F>
 void members(Stint& s, F&& f) {
@@ -205,6 +212,11 @@ void members(Restarted& e, F&& f) {
 }
 
 template <class F>
+void members(ForecastWater& e, F&& f) {
+  f("layers", e.layers), f("words", e.words);
+}
+
+template <class F>
 void members(QueuedFile& q, F&& f) {
   f("surfacing", q.surfacing), f("name", q.name), f("bytes", q.bytes), f("list", q.list);
 }
@@ -264,10 +276,10 @@ namespace {
 using nlohmann::json;
 
 /// The name of each alternative in the journal: never change one.
-constexpr std::array<const char*, 16> kEventNames{
-    "surfacing_heard", "fix_refused", "window_heard",    "window_extended", "dive_began", "transfer_heard",
-    "transfer_failed", "list_reread", "candidate",       "planning_ended",  "judged",     "emission_ended",
-    "folder_seen",     "timer_fired", "mission_changed", "restarted"};
+constexpr std::array<const char*, 17> kEventNames{
+    "surfacing_heard", "fix_refused", "window_heard",    "window_extended", "dive_began",    "transfer_heard",
+    "transfer_failed", "list_reread", "candidate",       "planning_ended",  "judged",        "emission_ended",
+    "folder_seen",     "timer_fired", "mission_changed", "restarted",       "forecast_water"};
 constexpr std::array<const char*, 9> kEffectNames{"begin_planning", "stop_planning", "verify",       "emit",
                                                   "inspect_folder", "set_timer",     "cancel_timer", "say",
                                                   "record"};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/utc.hpp"
+#include "core/mission/in_water.hpp"
 #include "core/ocean/freshness.hpp"
 
 namespace glidehelm::daemon {
@@ -42,9 +43,7 @@ void ForecastWatch::follow(const mission::Mission& mission) {
   const bool same =
       mission_ && mission_->currents == mission.currents && mission_->coast_file == mission.coast_file &&
       mission_->bathymetry_file == mission.bathymetry_file && mission_->depth_margin == mission.depth_margin &&
-      mission_->climb_to == mission.climb_to && mission_->dive_depth == mission.dive_depth &&
-      mission_->horizontal_speed == mission.horizontal_speed && mission_->glide_angle == mission.glide_angle &&
-      mission_->stint == mission.stint &&
+      dive_alike(*mission_, mission) &&
       (mission.currents.analytic.empty() || (mission_->goal == mission.goal && mission_->start == mission.start));
   mission_ = mission;
   if (same && (current_ || loading_)) return;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/mission/in_water.hpp"
+
 namespace glidehelm::daemon {
 
 namespace {
@@ -11,8 +13,7 @@ namespace {
 bool same(const OceanOrder& a, const OceanOrder& b) {
   const auto &m = a.mission, &n = b.mission;
   return a.grids == b.grids && a.cache == b.cache && a.settle == b.settle && a.has_coast == b.has_coast &&
-         a.member == b.member && m.currents == n.currents && m.climb_to == n.climb_to && m.dive_depth == n.dive_depth &&
-         m.horizontal_speed == n.horizontal_speed && m.glide_angle == n.glide_angle && m.stint == n.stint;
+         a.member == b.member && m.currents == n.currents && dive_alike(m, n);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/base/utc.hpp"
 #include "core/chart/bathymetry.hpp"
 #include "core/chart/coast.hpp"
+#include "core/mission/in_water.hpp"
 #include "core/ocean/freshness.hpp"
 #include "daemon/ingest_client.hpp"
 
@@ -176,8 +177,9 @@ OceanResult assemble(const OceanOrder& order, std::vector<Read> reads, world::Fi
   std::vector<ocean::ForecastSource> sources;
   for (const auto& read : reads) sources.push_back(forecast_source(read, order.has_coast));
   const ocean::Seams seams{m.currents.blend, m.currents.join};
+  const auto v = mission::in_water(m, ocean::water_of(sources).layers).mission;
   const auto profile =
-      ocean::DiveProfile::of_stint(m.climb_to, m.dive_depth, m.horizontal_speed, m.glide_angle, m.stint);
+      ocean::DiveProfile::of_stint(v.climb_to, v.dive_depth, v.horizontal_speed, v.glide_angle, v.stint);
   auto forecast = sources.empty() ? ocean::Forecast::prepare(*formulas)
                                   : ocean::Forecast::prepare(sources, seams, profile, *formulas,
                                                              turning_depth(*bottom, m.depth_margin));

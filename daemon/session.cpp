@@ -33,6 +33,7 @@ Session::Session(config::GliderEntry entry, Desk desk)
                    std::string text = "forecast in use: " + forecast_.in_use();
                    for (const auto& warning : ocean->forecast.facts().warnings) text += "; warning: " + warning;
                    desk_.log.info(entry_.name, text);
+                   tell_water();
                  },
                  [this](const std::string& problem) {
                    desk_.log.alert(entry_.name, forecast_.current() ? "a forecast is refused: " + problem +
@@ -142,6 +143,7 @@ void Session::feed(decltype(mission::Event::what) what) {
   }
   stepping_ = false;
   follow_mission();
+  tell_water();
   watch_folder();
   desk_.changed();
 }
@@ -168,6 +170,17 @@ void Session::follow_mission() {
     }
   }
   forecast_.follow(*mission);
+}
+
+/// The pilot hears of the forecast's water when its mission's body takes it and it is another than it knows: what it decides then stands in
+/// the journal, and a replay needs no forecast.
+void Session::tell_water() {
+  const auto& mission = pilot_.mission();
+  const auto ocean = forecast_.current();
+  if (!mission || !ocean || !takes_forecast_water(*mission)) return;
+  const auto& water = ocean->forecast.facts().water;
+  mission::ForecastWater heard{water.layers, water.words};
+  if (pilot_.forecast_water() != heard) feed(std::move(heard));
 }
 
 void Session::carry_out(const mission::SetTimer& e) {

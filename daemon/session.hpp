@@ -100,6 +100,7 @@ class Session {
   /// What the forecast in use said of the dive that this surfacing ends.
   void add_forecast_of_dive(mission::SurfacingHeard& heard) const;
   void follow_mission();
+  void tell_water();
   [[nodiscard]] verify::VerifyRequest verify_request(const mission::Verify& e) const;
   void note(RecordType type, const std::string& payload);
 

@@ -27,6 +27,7 @@ void ErrorFilter::forget(const DiveResidual& until) {
   const double rho = std::exp(-0.5 * d * d / (setup_.length * setup_.length) - t / setup_.time);
   for (std::size_t i = 2; i < 4; ++i) {
     x_[i] *= rho;
+    by_guess_[i] *= rho;
     for (std::size_t k = 0; k < 4; ++k) {
       p_[i][k] *= rho;
       p_[k][i] *= rho;
@@ -39,15 +40,17 @@ void ErrorFilter::forget(const DiveResidual& until) {
 
 void ErrorFilter::update(double observed, const State& row, double variance) {
   State pr{};
-  double innovation = observed, s = variance;
+  double innovation = observed, s = variance, of_guess = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     innovation -= row[i] * x_[i];
+    of_guess += row[i] * by_guess_[i];
     for (std::size_t k = 0; k < 4; ++k) pr[i] += p_[i][k] * row[k];
   }
   for (std::size_t i = 0; i < 4; ++i) s += row[i] * pr[i];
   const double limit = kFarthest * std::sqrt(s), off = std::abs(innovation);
   if (off > limit) innovation *= limit * limit / (off * off);
   for (std::size_t i = 0; i < 4; ++i) x_[i] += pr[i] / s * innovation;
+  for (std::size_t i = 0; i < 4; ++i) by_guess_[i] -= pr[i] / s * of_guess;
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 4; ++k) p_[i][k] -= pr[i] * pr[k] / s;
 }
@@ -63,6 +66,15 @@ void ErrorFilter::see(const DiveResidual& dive) {
   at_ = dive.at;
   at_s_ = dive.at_s;
   ++seen_;
+}
+
+void ErrorFilter::move_guess(double speed, double spread) {
+  // Seen from the old guess the new one is a first mean of δU that lies `moved` higher; then δU itself is counted from the new one.
+  const double moved = speed - setup_.speed;
+  for (std::size_t i = 0; i < 4; ++i) x_[i] += by_guess_[i] * moved;
+  x_[0] -= moved;
+  setup_.speed = speed;
+  setup_.speed_spread = spread;
 }
 
 double ErrorFilter::speed_error() const { return std::clamp(x_[0], kSlowest * setup_.speed, kFastest * setup_.speed); }

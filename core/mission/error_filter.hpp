@@ -44,6 +44,9 @@ class ErrorFilter {
   explicit ErrorFilter(const Setup& setup);
 
   void see(const DiveResidual& dive);
+  /// Another first guess of the speed after dives: as if it had been the one from the beginning. What the dives say of the speed stays what
+  /// it is; as much of the guess as is left in it moves along. Exact where no innovation was cut and no bias is learned (its column has U0).
+  void move_guess(double speed, double spread);
 
   [[nodiscard]] const Setup& setup() const { return setup_; }
   [[nodiscard]] int seen() const { return seen_; }
@@ -67,6 +70,7 @@ class ErrorFilter {
 
   Setup setup_;
   State x_{};
+  State by_guess_{1, 0, 0, 0};  ///< how x would have moved with the mean of the first guess of δU
   std::array<State, 4> p_{};
   GeoPoint at_;
   double at_s_{};

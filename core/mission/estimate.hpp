@@ -18,6 +18,8 @@ class Estimate {
 
   /// Takes an observation; one that is not finite is left out.
   void see(double observed);
+  /// Another first guess; what was observed stays.
+  void guess(double first_guess) { guess_ = first_guess; }
   [[nodiscard]] double value() const;
   [[nodiscard]] double spread() const;
   [[nodiscard]] int seen() const { return count_; }

@@ -134,6 +134,12 @@ struct FolderSeen {
   std::string detail;
   friend bool operator==(const FolderSeen&, const FolderSeen&) = default;
 };
+/// The forecast in use has this water, or none (no layers). For a body that the mission gives no water; before the plans that are made in it.
+struct ForecastWater {
+  std::vector<ocean::WaterLayer> layers;
+  std::string words;  ///< of which variables, or why there is none
+  friend bool operator==(const ForecastWater&, const ForecastWater&) = default;
+};
 enum class Timer { budget, deadline, late_note, late_alert, late_page };
 struct TimerFired {
   Timer timer{};
@@ -164,7 +170,7 @@ struct Event {
   Moment now;
   std::variant<SurfacingHeard, FixRefused, WindowHeard, WindowExtended, DiveBegan, TransferHeard, TransferFailed,
                ListReread, CandidateFound, PlanningEnded, Judged, EmissionEnded, FolderSeen, TimerFired, MissionChanged,
-               Restarted>
+               Restarted, ForecastWater>
       what;
   friend bool operator==(const Event&, const Event&) = default;
 };

@@ -129,15 +129,19 @@ std::optional<Current> believed_current(const model::Surfacing& surfacing, Radia
 
 // ---- Learning -------------------------------------------------------------------------------------------------------
 
+Learning::Guesses Learning::guesses_of(const Mission& m) {
+  return {m.horizontal_speed.si(),
+          m.stint.count(),
+          m.surface.count(),
+          m.frame_rotation,
+          m.currents.local_correction,
+          m.currents.correction_length.si(),
+          m.currents.correction_time.count()};
+}
+
 void Learning::configure(const Mission& m) {
   const Guesses was = guesses_;
-  guesses_ = {m.horizontal_speed.si(),
-              m.stint.count(),
-              m.surface.count(),
-              m.frame_rotation,
-              m.currents.local_correction,
-              m.currents.correction_length.si(),
-              m.currents.correction_time.count()};
+  guesses_ = guesses_of(m);
   if (guesses_.stint != was.stint) stint_ = Estimate{guesses_.stint, kGuessedTimes * guesses_.stint, kTimesFloor};
   if (guesses_.surface != was.surface)
     surface_ = Estimate{guesses_.surface, std::max(kTimesFloor, 0.2 * guesses_.surface), kTimesFloor};
@@ -146,6 +150,13 @@ void Learning::configure(const Mission& m) {
                                  degrees(kBiasGuess).si(), kForecastError,
                                  guesses_.length,          guesses_.time};
   if (!(errors_.setup() == setup)) errors_ = ErrorFilter{setup};
+}
+
+void Learning::follow_water(const Mission& m) {
+  guesses_ = guesses_of(m);
+  stint_.guess(guesses_.stint);
+  believed_.guess(guesses_.speed);
+  errors_.move_guess(guesses_.speed, kSpeedGuess * guesses_.speed);
 }
 
 /// A name or number once known is another one only when another one is printed: a connection block prints neither.

@@ -129,6 +129,8 @@ class Learning {
 
   /// First guesses and switches of a mission; what was learned stays where they are the same.
   void configure(const Mission& mission);
+  /// The same mission in other water: its first guesses of speed and stint move, and what surfacings have shown stays.
+  void follow_water(const Mission& mission);
   /// A surfacing. To take more of the same surfacing, take it again with a copy from before it.
   void see(const SurfacingSeen& seen);
   [[nodiscard]] Learned learned() const;
@@ -145,6 +147,7 @@ class Learning {
     double length{}, time{};
     friend bool operator==(const Guesses&, const Guesses&) = default;
   };
+  static Guesses guesses_of(const Mission& mission);
   void begin_mission(const model::Surfacing& s);
   void see_rotation(const SurfacingSeen& seen);
   [[nodiscard]] std::optional<double> see_times(const SurfacingSeen& seen);

@@ -222,6 +222,7 @@ void Pilot::note_dialog(const model::Surfacing& s) {
 void Pilot::open_surfacing(const SurfacingHeard& e) {
   const auto& s = e.surfacing;
   if (change_) take_over(*std::exchange(change_, std::nullopt));
+  if (water_waits_) take_water(*std::exchange(water_waits_, std::nullopt));
   if (request_ != 0 && stage_ == Stage::planning) out_.push_back(StopPlanning{request_});
   begin_learning(e);
   key_ = fmt::format("{}/{}", glider_, clock_text(s.fix_taken));

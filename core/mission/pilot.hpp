@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/mission/event.hpp"
+#include "core/mission/in_water.hpp"
 #include "core/mission/learning.hpp"
 
 namespace glidehelm::mission {
@@ -49,6 +50,10 @@ class Pilot {
   [[nodiscard]] bool awaits_answer() const;
   /// What plan, watch and margins use now.
   [[nodiscard]] const Learned& learned() const { return learned_; }
+  /// The water of the forecast as it was heard last; none yet: nobody has told.
+  [[nodiscard]] const std::optional<ForecastWater>& forecast_water() const {
+    return water_waits_ ? water_waits_ : water_;
+  }
   /// The file that was emitted last, and how far it has come.
   [[nodiscard]] const FileOnItsWay& file() const { return file_; }
   /// The dive that the next surfacing ends, for the forecast's mean along it; none before the first surfacing.
@@ -82,6 +87,7 @@ class Pilot {
   void on(const TimerFired& e);
   void on(const MissionChanged& e);
   void on(const Restarted& e);
+  void on(const ForecastWater& e);
 
   // accepting a fix
   [[nodiscard]] bool is_duplicate(const model::Surfacing& s) const;
@@ -102,6 +108,8 @@ class Pilot {
   void learn();
   void tell_learned();
   void set_mission(std::optional<Mission> mission);
+  bool take_water(const ForecastWater& water);
+  void tell_water(const InWater& vehicle);
 
   // after the emission (pilot_delivery.cpp)
   [[nodiscard]] bool is_of_our_name(const std::string& file) const;
@@ -143,9 +151,11 @@ class Pilot {
 
   std::string glider_;
   std::vector<MissionText> chain_;        ///< missions in force: the first is flown, the others wait for its goal
-  std::optional<Mission> mission_;        ///< the one that is flown
+  std::optional<Mission> mission_;        ///< the one that is flown, its body in the forecast's water
   std::optional<MissionChanged> change_;  ///< waits for the next surfacing
   bool skew_ok_{};
+  std::optional<ForecastWater> water_;        ///< that the body of the mission is weighed in
+  std::optional<ForecastWater> water_waits_;  ///< for the next surfacing
 
   Moment now_{};
   Effects out_;

@@ -22,10 +22,54 @@ bool differs(double a, double b) { return std::abs(a - b) > kTold * std::abs(b);
 
 void Pilot::set_mission(std::optional<Mission> mission) {
   mission_ = std::move(mission);
+  if (mission_ && takes_forecast_water(*mission_)) {
+    auto vehicle = in_water(*mission_, water_ ? water_->layers : std::vector<ocean::WaterLayer>{});
+    if (water_) tell_water(vehicle);
+    mission_ = std::move(vehicle.mission);
+  }
   const Mission guesses = mission_.value_or(Mission{});
   learning_.configure(guesses);
   learning_before_.configure(guesses);
   learned_ = learning_.learned();
+}
+
+/// In force at once, but for a surfacing that has candidates: they and their verdicts keep the vehicle that the plan began with.
+void Pilot::on(const ForecastWater& e) {
+  if (forecast_water() == e) return;
+  water_waits_.reset();
+  if (stage_ == Stage::planning && !ranked_.empty()) {
+    water_waits_ = e;
+    return;
+  }
+  if (take_water(e) && stage_ == Stage::planning) plan_again();
+}
+
+/// True when the vehicle is another one with it.
+bool Pilot::take_water(const ForecastWater& water) {
+  water_ = water;
+  if (!mission_ || !takes_forecast_water(*mission_)) return false;
+  auto vehicle = in_water(*mission_, water.layers);
+  tell_water(vehicle);
+  const bool other = vehicle.mission != *mission_;
+  mission_ = std::move(vehicle.mission);
+  for (auto* learning : {&learning_before_, &learning_}) learning->follow_water(*mission_);
+  learned_ = learning_.learned();
+  return other;
+}
+
+void Pilot::tell_water(const InWater& vehicle) {
+  if (!vehicle.refused.empty())
+    say(Level::alert, "water",
+        fmt::format("the body of vehicle.force_balance does not fly in the forecast's water ({}): {}", water_->words,
+                    vehicle.refused));
+  const std::string whose =
+      vehicle.from == WaterFrom::forecast ? fmt::format("the forecast's water ({})", water_->words)
+      : !vehicle.refused.empty()          ? "the climatological profile"
+                                 : fmt::format("the climatological profile, for want of the forecast's water{}",
+                                               water_->words.empty() ? "" : " (" + water_->words + ")");
+  say(Level::info, "water",
+      fmt::format("by its forces the glider makes {:.3f} m/s, {:.1f} deg below the horizon, in {}",
+                  vehicle.mission.horizontal_speed.si(), in_degrees(vehicle.mission.glide_angle), whose));
 }
 
 std::optional<Dive> Pilot::dive_under_way() const {

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "config/mission.hpp"
+#include "core/mission/in_water.hpp"
 #include "tests/support/config.hpp"
 
 using namespace glidehelm;

@@ -66,29 +66,31 @@ std::vector<Event> one_of_each() {
     r.lat_ddmm = "2860.000";
     return r;
   }();
-  std::vector<decltype(Event::what)> whats{SurfacingHeard{full_surfacing(desk),
-                                                          Metres{-12.5},
-                                                          Current{MetresPerSecond{0.1}, MetresPerSecond{0.2}},
-                                                          {{"bay", 0.25}, {"globe", 0.75}},
-                                                          true},
-                                           SurfacingHeard{desk.heard(-0.5, 0), std::nullopt, std::nullopt},
-                                           FixRefused{refusal_of},
-                                           WindowHeard{Seconds{235}},
-                                           WindowExtended{Seconds{300}},
-                                           DiveBegan{},
-                                           TransferHeard{"goto_l10.ma", true},
-                                           TransferFailed{"goto_l10.ma"},
-                                           ListReread{},
-                                           CandidateFound{full_candidate(desk)},
-                                           PlanningEnded{7, "no way"},
-                                           Judged{7, 2, test::verdict_on("goto_l10.ma", "bytes", "2 land"), ""},
-                                           Judged{7, 2, std::nullopt, "it died"},
-                                           EmissionEnded{EmissionEnded::Outcome::unknown, "sim01/t", "detail"},
-                                           FolderSeen{FolderSeen::Found::foreign, "goto_l10.ma"},
-                                           TimerFired{Timer::late_page, 12},
-                                           MissionChanged{{mission_text()}, true, "uid 1000"},
-                                           Restarted{EmissionEnded{EmissionEnded::Outcome::late, "sim01/t", ""}},
-                                           Restarted{}};
+  std::vector<decltype(Event::what)> whats{
+      SurfacingHeard{full_surfacing(desk),
+                     Metres{-12.5},
+                     Current{MetresPerSecond{0.1}, MetresPerSecond{0.2}},
+                     {{"bay", 0.25}, {"globe", 0.75}},
+                     true},
+      SurfacingHeard{desk.heard(-0.5, 0), std::nullopt, std::nullopt},
+      FixRefused{refusal_of},
+      WindowHeard{Seconds{235}},
+      WindowExtended{Seconds{300}},
+      DiveBegan{},
+      TransferHeard{"goto_l10.ma", true},
+      TransferFailed{"goto_l10.ma"},
+      ListReread{},
+      CandidateFound{full_candidate(desk)},
+      PlanningEnded{7, "no way"},
+      Judged{7, 2, test::verdict_on("goto_l10.ma", "bytes", "2 land"), ""},
+      Judged{7, 2, std::nullopt, "it died"},
+      EmissionEnded{EmissionEnded::Outcome::unknown, "sim01/t", "detail"},
+      FolderSeen{FolderSeen::Found::foreign, "goto_l10.ma"},
+      TimerFired{Timer::late_page, 12},
+      MissionChanged{{mission_text()}, true, "uid 1000"},
+      Restarted{EmissionEnded{EmissionEnded::Outcome::late, "sim01/t", ""}},
+      Restarted{},
+      ForecastWater{{{Metres{0.5}, 1.0 / 3, 35.25}, {Metres{100}, 10, 35}}, "temp \xc2\xb0 and salt"}};
   std::vector<Event> events;
   for (auto& what : whats) events.push_back({desk.now, std::move(what)});
   return events;
@@ -120,7 +122,7 @@ TEST_CASE("the names of events in the journal are what they were") {
                                        "window_extended", "dive_began",      "transfer_heard", "transfer_failed",
                                        "list_reread",     "candidate",       "planning_ended", "judged",
                                        "judged",          "emission_ended",  "folder_seen",    "timer_fired",
-                                       "mission_changed", "restarted",       "restarted"};
+                                       "mission_changed", "restarted",       "restarted",      "forecast_water"};
   const auto events = one_of_each();
   REQUIRE(events.size() == names.size());
   for (std::size_t i = 0; i < events.size(); ++i)

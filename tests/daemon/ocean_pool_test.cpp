@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/base/utc.hpp"
+#include "core/mission/in_water.hpp"
 #include "tests/support/forecast_shelf.hpp"
 
 using namespace glidehelm;
@@ -126,4 +127,21 @@ TEST_CASE("analytic currents lie around each glider's own goal and are not share
   REQUIRE(desk.answers.size() == 2);
   REQUIRE(desk.answers[0]);
   CHECK(*desk.answers[0] != *desk.answers[1]);
+}
+
+TEST_CASE("a body's mission in the forecast's water is the same order as before it was put there") {
+  Desk desk;
+  auto body = desk.order();
+  body.mission.flight_model.emplace();
+  desk.ask(body);
+  desk.manual.net.settle();
+  auto there = body;
+  there.mission = in_water(body.mission, ForecastShelf::water(24)).mission;
+  REQUIRE(there.mission.horizontal_speed != body.mission.horizontal_speed);
+  desk.ask(there);
+  desk.ask(desk.order());  // a configured speed has another profile
+  desk.manual.net.settle();
+  REQUIRE(desk.answers.size() == 3);
+  CHECK(*desk.answers[0] == *desk.answers[1]);
+  CHECK(*desk.answers[0] != *desk.answers[2]);
 }

@@ -18,11 +18,17 @@ namespace glidehelm::test {
 /// arguments, its story, its exit codes), and its files are one line of text each.
 class ForecastShelf {
  public:
-  /// What a file says: a steady eastward current over hourly times from `first_s`, of the model run of `reference_s`.
+  /// What a file says: a steady eastward current over hourly times from `first_s`, of the model run of `reference_s`; and where it has a
+  /// temperature of the surface, `water` of it.
   struct Says {
     double east{}, reference_s{}, first_s{};
     int hours{24};
+    std::optional<double> surface_c{};
   };
+  /// From `surface_c` to 4 °C at 1000 m, salinity 35.
+  static std::vector<ocean::WaterLayer> water(double surface_c) {
+    return {{Metres{0}, surface_c, 35}, {Metres{1000}, 4, 35}};
+  }
 
   explicit ForecastShelf(ManualWorld& world) : world_{world} {
     world_.files.make_folder_at("/data");
@@ -33,6 +39,7 @@ class ForecastShelf {
     std::ostringstream text;
     text.precision(17);
     text << "good " << says.east << " " << says.reference_s << " " << says.first_s << " " << says.hours;
+    if (says.surface_c) text << " " << *says.surface_c;
     world_.files.put("/data/" + name, text.str());
   }
   /// A file that is refused with `reason`.
@@ -86,6 +93,7 @@ class ForecastShelf {
       }
     std::map<double, std::pair<double, double>> east_at;  // time: reference, current; the newest run wins
     double reference = 0;
+    std::optional<double> surface_c;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       story += "reading " + std::to_string(i) + "\n";
       std::istringstream in{*world_.files.get(paths[i])};
@@ -95,6 +103,7 @@ class ForecastShelf {
       if (kind == "deadly") return Result{Result::End::signalled, std::stoi(in.str().substr(7)), story, ""};
       Says says;
       in >> says.east >> says.reference_s >> says.first_s >> says.hours;
+      if (double at_surface{}; says.reference_s >= reference && in >> at_surface) surface_c = at_surface;
       reference = std::max(reference, says.reference_s);
       for (int h = 0; h < says.hours; ++h) {
         auto& at = east_at[says.first_s + 3600.0 * h];
@@ -111,6 +120,7 @@ class ForecastShelf {
     });
     grid.facts.sources = sources;
     grid.facts.reference_s = reference;
+    if (surface_c) grid.facts.water = {water(*surface_c), "made up"};
     grid.facts.cycle = paths.back().substr(paths.back().rfind('/') + 1);
     world_.files.put(words.at(1), ocean::write_grid(grid));
     return Result{Result::End::exited, 0, story, ""};

@@ -10,7 +10,7 @@ using test::PilotDesk;
 
 namespace {
 
-const GeoPoint kAim = geo_point(28.7, -15.2);
+const GeoPoint kAimedAt = geo_point(28.7, -15.2);
 
 /// The timers that a late call would fire, as they were asked for last.
 std::map<Timer, SetTimer> late_timers(const PilotDesk& desk) {
@@ -53,7 +53,7 @@ void promise(PilotDesk& desk, double lat, const std::string& segment, GeoPoint p
   desk.step(SurfacingHeard{PilotDesk::at_surface(desk.heard(lat, -15.3), segment), std::nullopt});
   const auto request = desk.last<BeginPlanning>().at(0).request;
   auto c = desk.candidate(request.id, 1, "direct");
-  c.list.points = {{kAim, model::WaypointRole::aim}, {geo_point(29.1667, -15.5), model::WaypointRole::goal}};
+  c.list.points = {{kAimedAt, model::WaypointRole::aim}, {geo_point(29.1667, -15.5), model::WaypointRole::goal}};
   c.promise.next_surfacing = promised;
   const auto verify = PilotDesk::all<Verify>(desk.step(CandidateFound{c}));
   desk.step(PlanningEnded{request.id, ""});
@@ -167,7 +167,7 @@ TEST_CASE("a glider far outside its ellipse raises an alert once its Waypoint: l
   const auto fix = desk.heard(28.54 + 20.0 / 111.0, -15.3);
   desk.step(SurfacingHeard{fix, std::nullopt});
   CHECK_FALSE(heard(desk.last<Say>(), Level::alert, "far-off"));  // whose list it flew is not known yet
-  auto block = steering_to(PilotDesk::at_surface(fix, "0007.0004"), kAim);
+  auto block = steering_to(PilotDesk::at_surface(fix, "0007.0004"), kAimedAt);
   SECTION("ours") {
     desk.step(SurfacingHeard{block, std::nullopt});
     CHECK(heard(desk.last<Say>(), Level::alert, "far-off"));

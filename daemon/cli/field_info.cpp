@@ -24,6 +24,19 @@ ordered_json axis_json(const std::vector<double>& axis) {
           {"even", ocean::GridAxis{axis}.uniform()}};
 }
 
+/// Null when the files have no temperature and salinity.
+ordered_json water_json(const ocean::GridWater& water) {
+  if (water.words.empty()) return {};
+  ordered_json layers = ordered_json::array();
+  for (const auto& layer : water.layers)
+    layers.push_back({{"depth_m", layer.depth.si()},
+                      {"temperature_c", layer.temperature_c},
+                      {"salinity", layer.salinity},
+                      {"density_kg_per_m3", ocean::sea_water_density(layer.salinity, layer.temperature_c,
+                                                                     ocean::pressure_at(layer.depth))}});
+  return {{"words", water.words}, {"layers", std::move(layers)}};
+}
+
 ordered_json info_json(const ocean::GridView& view) {
   const auto& axes = view.axes;
   const auto& facts = view.facts;
@@ -63,6 +76,7 @@ ordered_json info_json(const ocean::GridView& view) {
   json["depths_m"] = axes.has_depth ? ordered_json(axes.depths_m) : ordered_json::array();
   json["wet_fraction"] = statistics.wet_fraction;
   json["speed_m_per_s"] = {{"min", statistics.slowest}, {"mean", statistics.mean}, {"max", statistics.fastest}};
+  json["water"] = water_json(facts.water);
   json["sources"] = ordered_json::array();
   for (const auto& source : facts.sources)
     json["sources"].push_back({{"file", source.name}, {"sha256", source.hash.hex()}});
@@ -100,6 +114,16 @@ void print_info(const ocean::GridView& view, std::ostream& out) {
   out << "water      " << decimal(100 * statistics.wet_fraction, 1) << " % of the nodes, "
       << decimal(statistics.slowest, 3) << " to " << decimal(statistics.fastest, 3) << " m/s, mean "
       << decimal(statistics.mean, 3) << " m/s\n";
+  if (!facts.water.words.empty()) {
+    out << "density    ";
+    if (!facts.water.layers.empty()) {
+      const auto &top = facts.water.layers.front(), &deepest = facts.water.layers.back();
+      out << "at " << decimal(top.depth.si(), 1) << " m " << decimal(top.temperature_c, 2) << " C and salinity "
+          << decimal(top.salinity, 2) << ", at " << decimal(deepest.depth.si(), 1) << " m "
+          << decimal(deepest.temperature_c, 2) << " C and " << decimal(deepest.salinity, 2) << "; ";
+    }
+    out << facts.water.words << '\n';
+  }
   for (const auto& warning : facts.warnings) out << "warning    " << warning << '\n';
 }
 

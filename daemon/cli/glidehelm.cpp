@@ -190,6 +190,8 @@ void add_polar(CLI::App& app, Action& action) {
   auto o = std::make_shared<cli::PolarOptions>();
   auto* verb = app.add_subcommand("polar", "Speeds of a glider by pitch and pump volume: the spider plot");
   verb->add_option("MISSION", o->mission, "Mission file with vehicle.force_balance (default: that section's defaults)");
+  verb->add_flag("--forecast", o->forecast,
+                 "In the temperature and salinity of the mission's forecast, as plans take it");
   verb->add_option("--depth", o->depth_m, "Metres: where the water's density is taken")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 6000.0));
@@ -201,7 +203,7 @@ void add_polar(CLI::App& app, Action& action) {
       "vehicle.force_balance of the mission, and plans use the speed and glide angle that follow. Example:\n"
       "  glidehelm polar leg-2.yaml --svg polar.svg\n"
       "\n"
-      "Exit: 0 done, 1 the mission's trim does not fly, 2 usage.");
+      "Exit: 0 done, 1 the mission's trim does not fly or its forecast is not read, 2 usage.");
   verb->callback(
       [o, &action] { action = [o](world::World& w) { return cli::run_polar(*o, w, std::cout, std::cerr); }; });
 }

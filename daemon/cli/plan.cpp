@@ -37,12 +37,22 @@ Json objective_json(const planning::Objective& objective) {
   return {{"kind", "min_distance_at"}, {"time", utc_text(instant_at(least->epoch_s), true)}};
 }
 
+/// Null without a body.
+Json force_balance_json(const Case& c) {
+  if (c.water == mission::WaterFrom::none) return nullptr;
+  const auto& words = c.ocean->forecast.facts().water.words;
+  return {{"glide_angle_deg", in_degrees(c.mission.glide_angle)},
+          {"water", mission::word(c.water)},
+          {"forecast_water", words.empty() ? Json(nullptr) : Json(words)}};
+}
+
 Json inputs_json(const Case& c) {
   const auto& p = c.request.problem;
   const auto& goal = std::get<planning::PointGoal>(p.goal);
   return {{"horizontal_speed_m_per_s", p.glider.horizontal_speed.si()},
           {"believed_speed_m_per_s", p.glider.believed_speed.si()},
           {"current_correction", p.glider.current_correction},
+          {"force_balance", force_balance_json(c)},
           {"stint_s", p.schedule.stint.count()},
           {"first_stint_s", p.schedule.first_stint.count()},
           {"surface_s", p.schedule.surface.count()},
@@ -121,6 +131,18 @@ Json plan_json(const Case& c, const std::optional<mission::Candidate>& found,
   return j;
 }
 
+/// One line of what the body's forces come to; nothing without a body.
+std::string force_balance_text(const Case& c) {
+  if (c.water == mission::WaterFrom::none) return "";
+  const auto& words = c.ocean->forecast.facts().water.words;
+  const std::string whose = c.water == mission::WaterFrom::mission ? "the mission's water"
+                            : c.water == mission::WaterFrom::forecast
+                                ? "the forecast's water: " + words
+                                : "the climatological profile" + (words.empty() ? "" : "; " + words);
+  return fmt::format("by its forces the glider makes {:.3f} m/s, {:.1f} degrees below the horizon, in {}\n",
+                     c.mission.horizontal_speed.si(), in_degrees(c.mission.glide_angle), whose);
+}
+
 std::string hours(double seconds) {
   const auto minutes = static_cast<long>(std::llround(seconds / 60));
   return fmt::format("{} h {:02} min", minutes / 60, minutes % 60);
@@ -137,6 +159,7 @@ void print_table(const Case& c, const mission::Candidate& found, std::ostream& o
   const auto& plan = found.plan;
   const auto& p = c.request.problem;
   out << fmt::format("plan by {} for {} ({})\n", plan.method, c.mission.name, c.ocean->label());
+  out << force_balance_text(c);
   if (plan.reaches_goal())
     out << fmt::format("reaches the goal {} after the fix, at {}\n", hours(plan.arrival_s - p.start.fix_s),
                        utc_text(instant_at(plan.arrival_s)));

@@ -29,6 +29,7 @@ struct PlanOptions {
 /// Plans once, offline. The start is --from, else the mission's; the time is --at, else the mission's, else now, else (said on `err`) the
 /// first time of the forecast when that does not reach to now. JSON as in product.md 9 (schema glidehelm/plan/v1). With --goto the list is
 /// judged as the daemon's files are, and written only when it is accepted.
+/// Of a body (vehicle.force_balance) the inputs say in whose water it is weighed, and the table has a line of it.
 /// With --members, or an ensemble in the mission, the plan of member 0 is flown in the members 0 to N − 1 too (plan_members.hpp); the answer says
 /// so in the key `ensemble`. With --each a plan is made in each of them (plan_each.hpp): the key `ensemble_plans`.
 /// Returns 0 reaches_goal, 1 any other status, 2 misuse, 4 the verifier refuses the list, 5 the budget ended with nothing.

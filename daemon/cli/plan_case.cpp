@@ -79,6 +79,12 @@ Expected<Case, Trouble> prepare_case(const PlanOptions& options, world::World& w
   c.ocean = std::move(ocean).value();
   const auto& facts = c.ocean->forecast.facts();
   for (const auto& warning : facts.warnings) err << "warning: " << warning << "\n";
+  auto vehicle = mission::in_water(c.mission, facts.water.layers);
+  if (!vehicle.refused.empty())
+    err << "warning: the body of vehicle.force_balance does not fly in the forecast's water: " << vehicle.refused
+        << "; the climatological profile is taken\n";
+  c.mission = std::move(vehicle.mission);
+  c.water = vehicle.from;
   if (!at) {
     at = world.clock.utc();
     if (facts.has_time && (epoch_seconds(*at) > facts.last_s || epoch_seconds(*at) < facts.first_s)) {

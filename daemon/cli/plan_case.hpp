@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/mission/event.hpp"
+#include "core/mission/in_water.hpp"
 #include "daemon/cli/mission_file.hpp"
 #include "daemon/cli/plan.hpp"
 #include "daemon/ocean_source.hpp"
@@ -13,7 +14,8 @@ namespace glidehelm::cli {
 
 /// Everything that one plan depends on, resolved.
 struct Case {
-  mission::Mission mission;
+  mission::Mission mission;    ///< its body in the forecast's water
+  mission::WaterFrom water{};  ///< whose water that is
   std::string mission_file, mission_text;
   std::shared_ptr<const daemon::ChartSource> chart;
   std::shared_ptr<const daemon::OceanSource> ocean;

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/mission/in_water.hpp"
 #include "core/vehicle/force_balance.hpp"
 #include "daemon/cli/mission_file.hpp"
 #include "daemon/cli/new_file.hpp"
+#include "daemon/ocean_source.hpp"
 
 namespace glidehelm::cli {
 
@@ -23,6 +25,7 @@ constexpr double kCubicCentimetre = 1e-6;
 struct Body {
   vehicle::FlightModel model;
   Metres climb_to, dive_depth;
+  mission::WaterFrom water{};
 };
 
 std::vector<double> pump_volumes() {
@@ -100,9 +103,10 @@ std::string svg(const Curves& curves, double depth_m) {
   return s + "</svg>\n";
 }
 
-nlohmann::json json_of(const Curves& curves, double depth_m, const vehicle::YoMeans& yo) {
+nlohmann::json json_of(const Curves& curves, double depth_m, mission::WaterFrom water, const vehicle::YoMeans& yo) {
   nlohmann::json j{{"schema", "glidehelm/polar/v1"},
                    {"depth_m", depth_m},
+                   {"water", mission::word(water)},
                    {"yo",
                     {{"horizontal_speed_m_per_s", yo.horizontal.si()},
                      {"glide_angle_deg", in_degrees(yo.glide_angle)},
@@ -125,10 +129,24 @@ nlohmann::json json_of(const Curves& curves, double depth_m, const vehicle::YoMe
   return j;
 }
 
+/// The water of the mission's forecast, or why there is no forecast.
+Expected<ocean::GridWater, std::string> forecast_water(const mission::Mission& m, world::World& world) {
+  const auto now = world.clock.utc();
+  const auto ocean =
+      daemon::load_ocean({m, world.files.scratch(), !m.coast_file.empty(), m.start_time.value_or(now), m.start}, world);
+  if (!ocean) return unexpected(ocean.error());
+  return (*ocean)->forecast.facts().water;
+}
+
 /// The body of the options, or the exit code.
 Expected<Body, int> body_of(const PolarOptions& options, world::World& world, std::ostream& err) {
+  using mission::WaterFrom;
   const mission::Mission standard;
-  if (options.mission.empty()) return Body{{}, standard.climb_to, standard.dive_depth};
+  if (options.mission.empty() && options.forecast) {
+    err << "--forecast needs a MISSION, whose forecast it is\n";
+    return unexpected(2);
+  }
+  if (options.mission.empty()) return Body{{}, standard.climb_to, standard.dive_depth, WaterFrom::climatology};
   std::string text;
   const auto mission = mission_from(options.mission, world.files, text);
   if (!mission) {
@@ -138,7 +156,27 @@ Expected<Body, int> body_of(const PolarOptions& options, world::World& world, st
   if (!mission->flight_model)
     err << "note: " << options.mission
         << " has no vehicle.force_balance: this is the polar of the section's defaults\n";
-  return Body{mission->flight_model.value_or(vehicle::FlightModel{}), mission->climb_to, mission->dive_depth};
+  Body body{mission->flight_model.value_or(vehicle::FlightModel{}), mission->climb_to, mission->dive_depth};
+  body.water = body.model.water.empty() ? WaterFrom::climatology : WaterFrom::mission;
+  if (!options.forecast) return body;
+  if (body.water == WaterFrom::mission) {
+    err << "note: the mission gives its own water: the forecast's is not taken\n";
+    return body;
+  }
+  const auto water = forecast_water(*mission, world);
+  if (!water) {
+    err << water.error() << "\n";
+    return unexpected(1);
+  }
+  if (water->layers.empty()) {
+    err << "note: the forecast has no water: "
+        << (water->words.empty() ? "it has no temperature and salinity" : water->words) << "\n";
+    return body;
+  }
+  err << "note: water of the forecast: " << water->words << "\n";
+  body.model.water = water->layers;
+  body.water = WaterFrom::forecast;
+  return body;
 }
 
 }  // namespace
@@ -152,7 +190,7 @@ int run_polar(const PolarOptions& options, world::World& world, std::ostream& ou
       }
   const auto body = body_of(options, world, err);
   if (!body) return body.error();
-  const auto& [model, climb_to, dive_depth] = *body;
+  const auto& [model, climb_to, dive_depth, whose] = *body;
   const auto water = model.column();
   const auto yo = vehicle::yo_means(model.hull, model.trim, water, climb_to, dive_depth);
   if (!yo) {
@@ -168,15 +206,19 @@ int run_polar(const PolarOptions& options, world::World& world, std::ostream& ou
         return 2;
       }
   if (options.json) {
-    out << json_of(curves, options.depth_m, *yo).dump(2) << "\n";
+    out << json_of(curves, options.depth_m, whose, *yo).dump(2) << "\n";
     return 0;
   }
+  const char* in = whose == mission::WaterFrom::mission    ? "the mission's water"
+                   : whose == mission::WaterFrom::forecast ? "the forecast's water"
+                                                           : "the climatological profile";
   out << fmt::format(
-      "Over the yo between {:.0f} and {:.0f} m: {:.3f} m/s horizontally, path {:.1f} degrees below the horizon, {:.0f} "
+      "In {}, over the yo between {:.0f} and {:.0f} m: {:.3f} m/s horizontally, path {:.1f} degrees below the horizon, "
+      "{:.0f} "
       "s down and {:.0f} s "
       "up.\nAt {:.0f} m, by pump volume, the pitch that goes forward fastest:\n\n  pump cm3   pitch   horizontal m/s   "
       "vertical m/s\n",
-      climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle), yo->down.count(),
+      in, climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle), yo->down.count(),
       yo->up.count(), options.depth_m);
   for (const auto& curve : curves)
     if (const auto* best = fastest_of(curve))

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/mission/in_water.hpp"
 #include "protocol/accept_fix.hpp"
 
 namespace glidehelm::cli {
@@ -15,6 +16,8 @@ RehearsalFlight::RehearsalFlight(Setup setup, std::shared_ptr<const daemon::Ocea
 
 void RehearsalFlight::fly() {
   feed(mission::MissionChanged{{{setup_.mission, "yaml", "sha"}}, false, "start"});
+  const auto& water = forecast_->forecast.facts().water;
+  if (takes_forecast_water(setup_.mission)) feed(mission::ForecastWater{water.layers, water.words});
   while (const auto next = simulation_->next_event()) {
     run_timers(*next);
     utc_ = *next;

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kTolerance = 2e-4;
 constexpr double kLongestDrift = 1800;  // seconds of one step at the surface
+constexpr double kNearly = 0.999;       // distances in the plane are good to 1e-4
 
 }  // namespace
 
@@ -22,6 +23,7 @@ void HeldLanes::begin(int count, double lat, double lon) {
   std::fill_n(at.lost.begin(), n, std::uint8_t{0});
   std::fill_n(arrival_s.begin(), n, kNever);
   std::fill_n(toll.begin(), n, 0.0);
+  std::fill_n(to_goal.begin(), n, 0.0);
 }
 
 HeldFlight::HeldFlight(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart, Metres margin)
@@ -32,7 +34,8 @@ HeldFlight::HeldFlight(const Problem& problem, const ocean::Ocean& ocean, const 
       margin_{margin.si()},
       step_{vehicle::lane_step(ocean, problem.start.fix, goal_.centre, problem.start.fix_s,
                                problem.schedule.stint.count(), problem.glider.horizontal_speed, kTolerance)},
-      fastest_{problem.glider.horizontal_speed.si() + ocean.dive.fastest().si()} {}
+      fastest_{
+          std::max(problem.glider.horizontal_speed.si() + ocean.dive.fastest().si(), ocean.surface.fastest().si())} {}
 
 void HeldFlight::fly(HeldLanes& lanes, int k, const std::array<double, ocean::Lanes::kMax>& headings, double until_s,
                      bool strict) {
@@ -102,6 +105,10 @@ double HeldFlight::toll(double lat0, double lon0, double lat1, double lon1, bool
 void HeldFlight::look_for_goal(HeldLanes& lanes, double from_s, double dt) {
   for (std::size_t k = 0; k < static_cast<std::size_t>(lanes.at.count); ++k) {
     if (!lanes.flies(k)) continue;
+    // A measured distance is spent at the fastest speed there is before another is measured.
+    lanes.to_goal[k] -= fastest_ * dt;
+    if (lanes.to_goal[k] > 0) continue;
+    lanes.to_goal[k] = kNearly * to_goal(lanes.at.lat[k], lanes.at.lon[k]) - goal_.radius.si();
     const auto share = vehicle::entry_into(goal_, lat_before_[k], lon_before_[k], lanes.at.lat[k], lanes.at.lon[k]);
     if (!share) continue;
     lanes.arrival_s[k] = from_s + *share * dt;

@@ -11,6 +11,7 @@ struct HeldLanes {
   ocean::Lanes at;                                   ///< where the lanes are; `lost` also holds kAground and kArrived
   std::array<double, ocean::Lanes::kMax> arrival_s;  ///< epoch second of the entry into the goal's disc; kNever
   std::array<double, ocean::Lanes::kMax> toll;       ///< metres: what nearness to land has cost so far
+  std::array<double, ocean::Lanes::kMax> to_goal;    ///< metres to the goal's disc, at least
 
   static constexpr std::uint8_t kAground = 200, kArrived = 201;  // beside ocean::NoCurrent
   static constexpr double kNever = 1e18;
@@ -56,7 +57,7 @@ class HeldFlight {
   ocean::Ocean ocean_;
   const chart::Chart& chart_;
   vehicle::Disc goal_;
-  double margin_, buffer_{}, step_, fastest_;
+  double margin_, buffer_{}, step_, fastest_;  ///< `fastest_`: over ground, m/s
   std::array<double, ocean::Lanes::kMax> lat_before_{}, lon_before_{};
   std::uint64_t evaluations_{};
 };

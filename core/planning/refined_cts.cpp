@@ -9,6 +9,7 @@
 
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/flown_refinement.hpp"
 #include "core/planning/path_keeping.hpp"
 #include "core/planning/purse.hpp"
 #include "core/planning/refinement.hpp"
@@ -28,8 +29,8 @@ constexpr std::array<Variant, 2> kVariants{{{2.0, 2.0}, {3.0, 1.0}}};
 /// ways come in otherwise.
 constexpr std::array<Variant, 4> kOthers{{{1.0, 1.0}, {1.0, 2.0}, {1.4, 1.0}, {0.7, 1.0}}};
 
-constexpr double kOnTime =
-    5e-4;  // of the travel time: a flight that is later than its way by more is polished as it goes
+/// Of the travel time: a flight that is later than its way by more is worth other searches.
+constexpr double kMuchLater = 3e-3;
 
 void keep_earlier(vehicle::FlownList& flown, vehicle::FlownList other) {
   if (other.arrival_s && (!flown.arrival_s || *other.arrival_s < *flown.arrival_s)) flown = std::move(other);
@@ -58,13 +59,11 @@ class Polish {
 
   [[nodiscard]] Refined polish(const std::vector<Heading>& headings) { return polish(headings, problem_); }
 
-  /// The polished way as the lists that will be emitted. The shortest way may only graze the goal's disc, and a flight that is a
-  /// little late or beside it is carried past where the current is strong: then ways to a smaller disc are flown.
+  /// The polished way as the lists that will be emitted. Where the law carries the glider past the goal the rest of the way is polished again as
+  /// it goes; and since the shortest way may only graze the goal's disc, ways to a smaller disc are flown where that does not help.
   [[nodiscard]] vehicle::FlownList fly(const Refined& way, double until_s) {
     auto flown = fly_path(way.headings, problem_, ocean_, chart_, until_s);
-    if (std::isnan(way.arrival_s)) return flown;
-    const double on_time = way.arrival_s + kOnTime * (way.arrival_s - problem_.start.fix_s);
-    if (flown.arrival_s && *flown.arrival_s <= on_time) return flown;
+    if (flown.arrival_s || std::isnan(way.arrival_s)) return flown;
     keep_earlier(flown, fly(way.headings, until_s, problem_));
     for (const double share : {0.9, 0.5}) {
       if (flown.arrival_s || purse_.is_empty()) break;
@@ -74,6 +73,14 @@ class Polish {
       keep_earlier(flown, fly(way_in.headings, until_s, inner));
     }
     return flown;
+  }
+
+  /// A plan that was flown to the goal, improved under the glider's own law.
+  void improve_flown(Plan& plan) {
+    if (!plan.reaches_goal() || purse_.is_empty()) return;
+    const auto refined = refine_flown(plan, problem_, ocean_, chart_, purse_.rest());
+    purse_.take(refined.statistics, refined.cut);
+    if (refined.flown) plan = plan_from(plan.method, *refined.flown, problem_, {});
   }
 
   [[nodiscard]] CtsSearch search_variant(const Variant& variant) {
@@ -134,11 +141,19 @@ RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const o
   for (const auto& plan : plans.subspan(1))
     if (better_than(plan, best)) best = plan;
   const auto reason = best.reason;
+  const auto later = [&](double arrival_s, double share) {
+    return arrival_s + share * (arrival_s - problem.start.fix_s);
+  };
   const auto offer = [&](const Refined& way, const std::string& method, double until_s) {
     if (way.headings.empty()) return;
     if (!std::isnan(way.arrival_s) && !(way.arrival_s >= answer.held_arrival_s)) answer.held_arrival_s = way.arrival_s;
+    if (best.reaches_goal()) {
+      if (!(way.arrival_s < best.arrival_s)) return;  // a flight is hardly ever earlier than what it keeps to
+      until_s = std::min(until_s, later(best.arrival_s, kSameValley));
+    }
     auto flown = plan_from(method, polish.fly(way, until_s), problem, {});
     if (!flown.reaches_goal()) flown.reason = reason;
+    polish.improve_flown(flown);
     if (better_than(flown, best)) best = std::move(flown);
   };
   for (const auto& plan : plans) {
@@ -159,14 +174,13 @@ RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const o
     }
     others.push_back(arrival_s);
   };
-  const auto near_the_best = [&](double arrival_s) {
-    return arrival_s - problem.start.fix_s <= (1 + kSameValley) * (answer.held_arrival_s - problem.start.fix_s);
-  };
+  const auto near_the_best = [&](double arrival_s) { return arrival_s <= later(answer.held_arrival_s, kSameValley); };
   for (const auto& variant : kVariants)
     if (!purse.is_empty()) search_otherwise(variant);
   answer.in_doubt = !std::all_of(others.begin(), others.end(), near_the_best);
   for (const auto& variant : kOthers)
-    if (!std::isnan(answer.held_arrival_s) && !near_the_best(best.arrival_s) && !purse.is_empty())
+    if (!std::isnan(answer.held_arrival_s) && !(best.arrival_s <= later(answer.held_arrival_s, kMuchLater)) &&
+        !purse.is_empty())
       search_otherwise(variant);
   return answer;
 }

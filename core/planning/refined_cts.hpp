@@ -15,8 +15,8 @@ class SharedToGo;
 /// headings; refinement is good at the rest. So the searched plan is refined, and so are the ways of two other searches, with
 /// coarser cells and more headings, which now and then choose another valley. The earliest arrival counts.
 ///
-/// The plan is flown again as the lists that will be emitted (path_keeping.hpp) and is never worse than the searched one: where
-/// it would be, that one is the answer under its own name.
+/// The refined way is flown as the lists that will be emitted (path_keeping.hpp) and that flight is refined once more under the glider's own law
+/// (flown_refinement.hpp). The plan is never worse than the searched one: where it would be, that one is the answer under its own name.
 class RefinedCts final : public Planner {
  public:
   [[nodiscard]] std::string_view name() const noexcept override { return "cts-astar-refined"; }
@@ -29,9 +29,7 @@ class RefinedCts final : public Planner {
                                                  const std::function<void(const Plan&)>& better) const override;
 };
 
-/// The best of the plans (at least one), of what refinement makes of each, and, where one reaches the goal, of the refined ways of
-/// other searches, within what the purse still holds. A plan that was polished is called after the one that it began as:
-/// "cts-astar-refined", "direct-refined". `to_go`: of the same problem.
+/// What `refined` made of plans.
 struct RefinedPlan {
   Plan plan;
   /// Epoch second at which the earliest of the refined ways arrives as it was polished, each heading held for its whole stint; NaN when none
@@ -42,6 +40,9 @@ struct RefinedPlan {
   bool in_doubt{};
 };
 inline constexpr double kSameValley = 0.01;  ///< of the travel time
+/// The best of the plans (at least one), of what refinement makes of each, and, where one reaches the goal, of the refined ways of
+/// other searches, within what the purse still holds. A plan that was polished is called after the one that it began as:
+/// "cts-astar-refined", "direct-refined". `to_go`: of the same problem.
 RefinedPlan refined(std::span<const Plan> plans, const Problem& problem, const ocean::Ocean& ocean,
                     const chart::Chart& chart, Purse& purse, SharedToGo& to_go);
 

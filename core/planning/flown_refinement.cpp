@@ -1,0 +1,131 @@
+#include "core/planning/flown_refinement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "core/base/local_metric.hpp"
+#include "core/planning/flight.hpp"
+#include "core/planning/link_chain.hpp"
+
+namespace glidehelm::planning {
+
+namespace {
+
+constexpr double kBuffer = 250.0;  // metres beyond the margin where nearness to land is taxed
+constexpr int kMostRounds = 20;
+constexpr double kWorthwhile = 3e-6;  // of the travel time, won in a round
+/// From bold to careful.
+constexpr std::array<Damping, 4> kDampings{{{0, 0}, {0, 1}, {4, 4}, {32, 32}}};
+constexpr std::array kShares{1.0, 0.3};
+
+class FlightRefinement {
+ public:
+  FlightRefinement(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart)
+      : problem_{problem},
+        waters_{waters_of(problem, ocean, chart)},
+        held_{problem, ocean, chart, problem.coast_margin},
+        steps_{kBuffer / 3, kBuffer / 3 / (problem.glider.horizontal_speed.si() * problem.schedule.stint.count())} {
+    held_.set_buffer(Metres{kBuffer});
+  }
+
+  RefinedFlight run(const Plan& plan, const Budget& budget) {
+    RefinedFlight answer;
+    best_s_ = plan.arrival_s;
+    way_ = plan.stints;
+    for (int round = 0; round < kMostRounds && answer.statistics.expansions < budget.work; ++round) {
+      if (budget.expired && budget.expired()) {
+        answer.cut = true;
+        break;
+      }
+      ++answer.statistics.expansions;
+      if (!measure(answer.statistics)) break;
+      auto flown = improve();
+      if (!flown) break;
+      const double won = best_s_ - *flown->arrival_s;
+      best_s_ = *flown->arrival_s;
+      way_ = flown->stints;
+      answer.flown = std::move(flown);
+      if (won < kWorthwhile * (best_s_ - problem_.start.fix_s)) break;
+    }
+    answer.statistics.cost_evaluations += flights_ * way_.size();
+    answer.statistics.current_evaluations = held_.evaluations();
+    return answer;
+  }
+
+ private:
+  /// The links of the way at hand, up to its arrival.
+  bool measure(Statistics& statistics) {
+    links_.clear();
+    GeoPoint from = problem_.start.fix;
+    for (std::size_t k = 0; k < way_.size(); ++k) {
+      const auto m = measure_link(held_, static_cast<int>(k), from.lat.radians(), from.lon.radians(),
+                                  way_[k].heading.from_north().si(), best_s_, steps_);
+      if (!m) return false;
+      statistics.cost_evaluations += kLinkLanes;
+      links_.push_back(m->link);
+      const auto& centre = held_.goal().centre;
+      const auto off = local_offset(centre.lat.radians(), centre.lon.radians(), m->end_lat, m->end_lon);
+      to_end_ = {off.east, off.north};
+      from = way_[k].surface;
+    }
+    return !links_.empty();
+  }
+
+  /// The first step, from bold to careful, whose headings are earlier when they are flown by themselves.
+  std::optional<vehicle::FlownList> improve() {
+    for (const auto damping : kDampings) {
+      const auto gains = gains_of(links_, to_end_, damping);
+      for (const double share : kShares) {
+        const auto found = fly([&](std::size_t k, GeoPoint dive) { return answer(gains[k], share, k, dive); });
+        if (!found.arrival_s) continue;
+        auto flown =
+            fly([&](std::size_t k, GeoPoint) { return (k < found.stints.size() ? found.stints[k] : way_[k]).heading; });
+        if (flown.arrival_s && *flown.arrival_s < best_s_) return flown;
+      }
+    }
+    return std::nullopt;
+  }
+  /// The heading of stint k under a step, and under its feedback on where the glider dives.
+  [[nodiscard]] Heading answer(const Gain& gain, double share, std::size_t k, GeoPoint dive) const {
+    const auto& meant = way_[k].dive;
+    const auto off = local_offset(meant.lat.radians(), meant.lon.radians(), dive.lat.radians(), dive.lon.radians());
+    const double back = gain.feedback.dot(Eigen::Vector2d{off.east, off.north});
+    return way_[k].heading + Radians{share * gain.turn + std::clamp(back, -kLongestTurn, kLongestTurn)};
+  }
+
+  /// A flight by the law, on the headings of as many stints as the way has, given up where it is no earlier.
+  template <class HeadingOf>
+  vehicle::FlownList fly(const HeadingOf& heading_of) {
+    ++flights_;
+    auto flight = flight_of(problem_);
+    flight.horizon_s = std::min(flight.horizon_s, best_s_);
+    return vehicle::fly_helm(
+        [&](int stint, GeoPoint dive, double) -> std::optional<Heading> {
+          const auto k = static_cast<std::size_t>(stint);
+          return k < way_.size() ? std::optional{heading_of(k, dive)} : std::nullopt;
+        },
+        flight, waters_);
+  }
+
+  const Problem& problem_;
+  vehicle::Waters waters_;
+  HeldFlight held_;
+  Steps steps_;
+  std::vector<vehicle::Stint> way_;  ///< as it was flown
+  double best_s_{};                  ///< epoch second of its arrival
+  std::vector<ChainLink> links_;
+  Eigen::Vector2d to_end_ = Eigen::Vector2d::Zero();
+  std::uint64_t flights_{};
+};
+
+}  // namespace
+
+RefinedFlight refine_flown(const Plan& plan, const Problem& problem, const ocean::Ocean& ocean,
+                           const chart::Chart& chart, const Budget& budget) {
+  if (!plan.reaches_goal() || plan.stints.empty()) return {};
+  return FlightRefinement{problem, ocean, chart}.run(plan, budget);
+}
+
+}  // namespace glidehelm::planning

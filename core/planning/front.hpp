@@ -20,7 +20,7 @@ namespace glidehelm::planning {
 
 /// The boundary of what a vehicle can have reached that is free to change its heading at every instant.
 ///
-/// A closed clockwise polygon of markers. Each follows Zermelo's extremal (Zermelo 1931; Bryson & Ho 1975, 2.7):
+/// A closed clockwise polygon of markers, with a loop for each hole in it. Each follows Zermelo's extremal (Zermelo 1931; Bryson & Ho 1975, 2.7):
 /// dx/dt = c(x, t) + U·n with n normal to the front. A step holds the heading that the marker will have at its middle, and
 /// carries a second place, `kBeside` along the front: the line between the two ends gives the new normal, (Dφ)⁻ᵀn, so no
 /// gradient of the field is asked for. Second order in the step. Drifting is the same with U = 0. Nothing depends on |c| < U.
@@ -30,8 +30,10 @@ namespace glidehelm::planning {
 /// - `refine`: edges longer than `spacing`, or that turn much, get markers on the cubic that has the ends' normals
 ///   (fourth order in the spacing).
 /// - `prune`: swallowtails grow without limit and are cut. A place about which the polygon winds is reached (the degree of
-///   the map from slower vehicles' extremals to the plane); a marker is dropped when that holds for its cell and the eight
-///   around it. What is cut off is inside for good: from inside the set no motion leads to its boundary.
+///   the map from slower vehicles' extremals to the plane); a marker is dropped when that holds all round it (winding.hpp). What is cut
+///   off is inside for good: from inside the set no motion leads to its boundary. The pieces that are left are closed where they cross
+///   each other (front_loops.hpp): edges across the reached set would, as it bends, sweep water nobody has reached, and what is dropped
+///   there is lost.
 /// - coasts (borders of the chart): a marker that meets one becomes two that walk along it, one to each side (wall_walk.hpp),
 ///   and each is the front's end there until it meets the next one on the same wall. So a front goes round corners and
 ///   through straits of any width, and is of second order there too. A walker leaves markers behind, which stay: the
@@ -55,7 +57,8 @@ class Front {
   std::optional<double> advance(ocean::FieldRef field, double speed, double t_s, double dt, const vehicle::Disc& goal,
                                 bool retry);
   void refine();
-  /// Nothing happens while there are few more markers than after the last time. `t_s`: epoch seconds at which the end of the data is looked for.
+  /// To be called after each step: the pieces that are left are joined anew while their ends still lie beside each other. `t_s`: epoch
+  /// seconds at which the end of the data is looked for.
   void prune(double t_s);
   /// Stops the markers (radians) for which `useless` holds: they stay where they are for good.
   void stop(const std::function<bool(double lat, double lon)>& useless);
@@ -78,6 +81,7 @@ class Front {
               std::uint8_t lost);
   std::vector<bool> deep(double t_s, std::vector<bool> asked);
   void rest_inside(double t_s);
+  void keep_walls(std::span<const Marker> run, bool cut, std::vector<Marker>& kept);
   [[nodiscard]] bool is_spot(std::span<const Marker> coast) const;
   bool blocked(std::int64_t row, std::int64_t column, double t_s);
   bool fan_out();
@@ -111,7 +115,6 @@ class Front {
   std::unordered_set<std::int64_t> walls_, creeps_;  ///< cells that have sent; only asked, never walked through
   double room_{};  ///< metres that nothing can have come nearer than to the goal's disc
   bool met_coast_{}, met_shallows_{}, met_dry_{};
-  std::size_t after_prune_{};
   unsigned steps_{};
   bool complete_{true};
   std::size_t evaluations_{};

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/base/local_metric.hpp"
 #include "core/planning/front_edge.hpp"
+#include "core/planning/front_loops.hpp"
 
 // How a front keeps its shape: more markers where they are far apart, fewer where the inside has been reached.
 namespace glidehelm::planning {
@@ -80,7 +82,8 @@ void Front::refine() {
     const Marker& next = markers_[i + 1 == n ? 0 : i + 1];
     if (!out.empty() && i + 1 < n && spare(out.back(), m, next)) continue;
     Marker trail = m;  // what a walker leaves behind
-    trail.forward = trail.back = trail.joins = false;
+    trail.forward = trail.back = false;
+    trail.unjoin();
     if (m.forward && !out.empty() && !out.back().joins && far_apart(out.back(), m)) out.push_back(trail);
     out.push_back(m);
     if (m.back && !m.joins && far_apart(m, next)) out.push_back(trail);
@@ -175,59 +178,71 @@ bool Front::is_spot(std::span<const Marker> coast) const {
 }
 
 void Front::prune(double t_s) {
-  if (markers_.size() < after_prune_ + after_prune_ / 8) return;
-  auto deep_ones = deep(t_s, std::vector<bool>(markers_.size(), true));
-  const auto stays = std::find(deep_ones.begin(), deep_ones.end(), false);
-  if (stays == deep_ones.end()) return;
-  // The walk round begins with one that stays.
-  std::rotate(markers_.begin(), markers_.begin() + (stays - deep_ones.begin()), markers_.end());
-  std::rotate(deep_ones.begin(), stays, deep_ones.end());
-  const std::size_t count = markers_.size();
+  auto inside = deep(t_s, std::vector<bool>(markers_.size(), true));
+  if (!markers_.back().ends_piece()) {  // one loop, uncut: the walk round begins with a marker that stays
+    const auto stays = std::find(inside.begin(), inside.end(), false) - inside.begin();
+    if (stays == std::ssize(inside)) return;
+    std::rotate(markers_.begin(), markers_.begin() + stays, markers_.end());
+    std::rotate(inside.begin(), inside.begin() + stays, inside.end());
+  }
   std::vector<Marker> kept;
-  kept.reserve(count);
-  for (std::size_t n = 0; n < count;) {
-    if (!deep_ones[n]) {
+  kept.reserve(markers_.size());
+  bool cut = true;  // before the next marker
+  for (std::size_t n = 0; n < markers_.size();) {
+    std::size_t end = n;
+    if (!inside[n]) {
       kept.push_back(markers_[n++]);
-      continue;
+    } else {
+      while (end < markers_.size() && inside[end] && (end == n || !markers_[end - 1].ends_piece())) ++end;
+      keep_walls(std::span{markers_}.subspan(n, end - n), cut, kept);
+      n = end;
     }
-    // A run that goes. Coasts stay, and the first and last markers at other walls: there the front's ends run along the walls.
-    std::size_t end = n, first = count, last = count;
-    for (; end < count && deep_ones[end]; ++end)
-      if (markers_[end].stuck && !markers_[end].coast) {
-        if (first == count) first = end;
-        last = end;
-      }
-    bool gap = kept.back().joins;
-    while (n < end) {
-      if (markers_[n].coast) {
-        std::size_t after = n + 1;
-        while (after < end && markers_[after].coast && !markers_[after - 1].joins) ++after;
-        const bool alone = gap && (markers_[after - 1].joins || (after < end && !markers_[after].stuck));
-        if (alone && is_spot(std::span{markers_}.subspan(n, after - n))) {
-          n = after;
-          continue;
-        }
-        kept.back().joins = kept.back().joins || gap;
-        for (; n < after; ++n) {
-          kept.push_back(markers_[n]);
-          kept.back().done = true;
-          kept.back().forward = kept.back().back = false;
-        }
-        gap = kept.back().joins;
-      } else if (n == first || n == last) {
-        if (n != first) kept.back().joins = true;
-        kept.push_back(markers_[n++]);
-        gap = false;
-      } else {
-        gap = true;
-        ++n;
-      }
-    }
-    if (gap && last == count) kept.back().joins = true;
+    cut = !kept.empty() && kept.back().ends_piece();
   }
   if (kept.size() < 3) return;
-  markers_ = std::move(kept);
-  after_prune_ = markers_.size();
+  markers_ = closed_loops(kept);
+}
+
+/// Keeps of a run of markers inside, all of one piece, what lies at walls: coasts, and the first and last markers at other walls, along
+/// which the front's ends run. `cut`: the piece begins with the run.
+void Front::keep_walls(std::span<const Marker> run, bool cut, std::vector<Marker>& kept) {
+  const bool ends = run.back().ends_piece();
+  const auto at_wall = [](const Marker& m) { return m.stuck && !m.coast; };
+  const auto first = std::find_if(run.begin(), run.end(), at_wall);
+  const auto last = std::find_if(run.rbegin(), run.rend(), at_wall).base();  // one past it
+  // In the middle of the reached set no front's end is left.
+  const bool skirt = first != run.end() && ((!cut && first == run.begin()) || (!ends && last == run.end()));
+  bool gap = cut;
+  const auto put = [&](const Marker& m) {
+    if (gap && !kept.empty()) kept.back().cut();
+    kept.push_back(m);
+    gap = m.ends_piece();
+  };
+  for (auto m = run.begin(); m != run.end();) {
+    if (m->coast) {
+      auto after = m + 1;
+      while (after != run.end() && after->coast && !(after - 1)->joins) ++after;
+      const bool alone = gap && (after == run.end() ? ends : !after->stuck);
+      if (alone && is_spot(std::span{m, after})) {
+        m = after;
+        gap = true;
+        continue;
+      }
+      for (; m != after; ++m) {
+        put(*m);
+        kept.back().done = true;
+        kept.back().forward = kept.back().back = false;
+      }
+    } else if (skirt && first <= m && m < last) {
+      if (m != first && m + 1 == last) kept.back().skirt();
+      if (m == first || m + 1 == last) put(*m);
+      ++m;
+    } else {
+      gap = true;
+      ++m;
+    }
+  }
+  if (gap && !kept.empty()) kept.back().cut();
 }
 
 }  // namespace glidehelm::planning

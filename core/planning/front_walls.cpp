@@ -168,7 +168,7 @@ void Front::part_at_coasts(ocean::FieldRef field, double speed, double t_s, doub
         ((out.back().forward && has_passed(out.back(), m)) || (next.back && has_passed(next, m))))
       continue;
     Marker first = m;
-    first.joins = false;
+    first.unjoin();
     first.back = m.forward = true;
     parted.push_back(out.size());
     out.push_back(first);
@@ -217,7 +217,7 @@ bool Front::fan_out() {
       side.east = n.east;
       side.north = n.north;
       side.stuck = i == 0;
-      side.joins = i == kFan && m.joins;
+      if (i != kFan) side.unjoin();
       if (i != 0 && side.left > 1.0) senders.push_back(out.size());
       out.push_back(side);
     }
@@ -238,7 +238,7 @@ void Front::creep(const Marker& a, const Marker& b, std::vector<Marker>& out) {
     side.east = n.east;
     side.north = n.north;
     side.turn = 0;
-    side.joins = false;
+    side.unjoin();
     out.push_back(side);
   }
 }

@@ -98,9 +98,14 @@ class Run {
     return false;
   }
   void keep_isochrone() {
-    Isochrone line{problem_.start.fix_s + now_, {}};
-    for (const auto& m : front_.markers()) line.line.push_back(GeoPoint::from_kernel(m.lat, m.lon));
-    isochrones_.push_back(std::move(line));
+    Isochrone isochrone{problem_.start.fix_s + now_, {}};
+    bool begins = true;
+    for (const auto& m : front_.markers()) {
+      if (begins) isochrone.lines.emplace_back();
+      isochrone.lines.back().push_back(GeoPoint::from_kernel(m.lat, m.lon));
+      begins = m.closes;
+    }
+    isochrones_.push_back(std::move(isochrone));
   }
   [[nodiscard]] bool nothing_moves() const {
     return std::all_of(front_.markers().begin(), front_.markers().end(), [](const Marker& m) { return m.idle; });

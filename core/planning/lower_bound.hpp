@@ -10,10 +10,10 @@
 /// The certificate: how early any vehicle could arrive.
 namespace glidehelm::planning {
 
-/// Where the front was at an instant: a closed line, for maps.
+/// Where the front was at an instant: closed lines, the outline of what can have been reached and one round each hole in it.
 struct Isochrone {
   double t_s{};  ///< epoch seconds, a surfacing
-  std::vector<GeoPoint> line;
+  std::vector<std::vector<GeoPoint>> lines;
 };
 
 /// What can be said about the earliest arrival of a vehicle with the problem's speed and dive schedule, in the same currents

@@ -29,7 +29,7 @@ class Raster {
     rows_ = static_cast<std::int64_t>(std::floor(north)) + 2 - south_;
     columns_ = static_cast<std::int64_t>(std::floor(east)) + 2 - west_;
     winds_.assign(static_cast<std::size_t>(rows_ * columns_), 0);
-    for (std::size_t i = 0; i < polygon.size(); ++i) cross(polygon[i], polygon[i + 1 == polygon.size() ? 0 : i + 1]);
+    for_each_edge(polygon, [this](const Marker& a, const Marker& b) { cross(a, b); });
     for (std::int64_t row = 0; row < rows_; ++row)
       for (std::int64_t column = 1; column < columns_; ++column)
         wind(row, column) = static_cast<std::int16_t>(wind(row, column) + wind(row, column - 1));
@@ -92,13 +92,12 @@ class Rows {
       for (auto k = static_cast<std::size_t>(std::max(0.0, row - reach)); k <= last; ++k) wanted[k] = 1;
     }
     const auto for_rows = [&](const auto& touch) {
-      for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Marker &from = polygon[i], &to = polygon[i + 1 == polygon.size() ? 0 : i + 1];
+      for_each_edge(polygon, [&](const Marker& from, const Marker& to) {
         const double f = row_of(from.lat) - south_, t = row_of(to.lat) - south_;
         const auto last = static_cast<std::size_t>(std::max(f, t));
         for (auto row = static_cast<std::size_t>(std::min(f, t)); row <= last; ++row)
           if (wanted[row] != 0) touch(row, from, to);
-      }
+      });
     };
     first_.assign(rows + 1, 0);
     for_rows([&](std::size_t row, const Marker&, const Marker&) { ++first_[row + 1]; });
@@ -107,7 +106,7 @@ class Rows {
     auto next = first_;
     for_rows([&](std::size_t row, const Marker& from, const Marker& to) {
       const double rise = to.lat - from.lat;
-      edges_[next[row]++] = {from.lat, to.lat, from.lon, rise == 0 ? 0.0 : (to.lon - from.lon) / rise};
+      edges_[next[row]++] = {from.lat, to.lat, from.lon, rise == 0 ? 0.0 : (to.lon - from.lon) / rise, &from, &to};
     });
   }
   [[nodiscard]] bool winds_about(double lat, double lon) const {
@@ -123,11 +122,22 @@ class Rows {
     return winds != 0;
   }
   static constexpr double kReach = 0.25;
+  /// Calls `touch(from, to)` for the edges that may be within `kReach` cells of a marker, until one answers true. Some come twice.
+  template <class Touch>
+  [[nodiscard]] bool any_near(const Marker& m, const Touch& touch) const {
+    const double row = row_of(m.lat) - south_, reach = kReach * kPerCell;
+    const auto last = std::min(first_.size() - 2, static_cast<std::size_t>(row + reach));
+    for (auto k = static_cast<std::size_t>(std::max(0.0, row - reach)); k <= last; ++k)
+      for (auto e = first_[k]; e < first_[k + 1]; ++e)
+        if (touch(*edges_[e].begin, *edges_[e].end)) return true;
+    return false;
+  }
 
  private:
   struct Edge {
     double from, to;    ///< latitudes
     double lon, slope;  ///< where it begins; longitude per latitude
+    const Marker *begin, *end;
   };
   static constexpr double kPerCell = 8;  ///< narrow rows: beside coasts edges are short
   [[nodiscard]] double row_of(double lat) const { return kPerCell * (lat - lattice_.lat) * lattice_.per_lat; }
@@ -138,8 +148,8 @@ class Rows {
   std::vector<Edge> edges_;         ///< by row
 };
 
-/// Beside a coast: see deep_inside.
-bool deep_beside_coast(const Marker& m, const Rows& rows, const Squares& lattice, const Surroundings& around) {
+/// All places around it: see deep_inside.
+bool deep_all_round(const Marker& m, const Rows& rows, const Squares& lattice, const Surroundings& around) {
   constexpr std::array kParts{1.0 / 64, Rows::kReach};
   const double s = std::sqrt(0.5);
   const std::array<std::array<double, 2>, 8> turns{
@@ -153,6 +163,61 @@ bool deep_beside_coast(const Marker& m, const Rows& rows, const Squares& lattice
   return true;
 }
 
+/// Markers in the shadow of another sheet: see deep_inside.
+class Shadows {
+ public:
+  Shadows(const std::vector<Marker>& front, const Rows& rows, const Squares& lattice, const Surroundings& around)
+      : front_{front}, rows_{rows}, lattice_{lattice}, around_{around}, along_(front.size()) {
+    for (std::size_t i = 1; i < front.size(); ++i)
+      along_[i] =
+          along_[i - 1] + (front[i - 1].joins ? kElsewhere : way(front[i - 1], front[i].lat, front[i].lon).length());
+  }
+  /// Adds to the markers that are deep inside those in a shadow.
+  void add(std::vector<bool>& deep, const std::vector<bool>& asked) const {
+    const auto look = [&](std::size_t i) {
+      const Marker& m = front_[i];
+      if (asked[i] && !deep[i] && !m.stuck && !m.idle) deep[i] = is_shadowed(i, deep);
+    };
+    for (std::size_t i = 1; i < front_.size(); ++i)
+      if (front_[i - 1].ends_piece() || deep[i - 1]) look(i);
+    for (std::size_t i = front_.size() - 1; i-- > 0;)
+      if (front_[i].ends_piece() || deep[i + 1]) look(i);
+  }
+
+ private:
+  static constexpr double kSame = 0.02;      ///< cells: sheets as near as this are one
+  static constexpr double kAlike = 0.95;     ///< cosine between normals of sheets that go the same way
+  static constexpr double kApart = 4;        ///< cells along the front between a marker and another sheet
+  static constexpr double kElsewhere = 1e9;  ///< the same, in another piece
+
+  [[nodiscard]] Offset way(const Marker& from, double lat, double lon) const {  // in cells
+    return {(lon - from.lon) * lattice_.per_lon, (lat - from.lat) * lattice_.per_lat};
+  }
+  [[nodiscard]] bool is_shadowed(std::size_t i, const std::vector<bool>& deep) const {
+    const Marker& m = front_[i];
+    const auto alike = [&m](const Marker& other) { return other.east * m.east + other.north * m.north >= kAlike; };
+    const auto is_other_sheet = [&](const Marker& other) {
+      const auto k = static_cast<std::size_t>(&other - front_.data());
+      return !other.stuck && !other.idle && !deep[k] && std::abs(along_[k] - along_[i]) > kApart;
+    };
+    return rows_.any_near(m, [&](const Marker& a, const Marker& b) {
+      if (a.joins || !alike(a) || !alike(b) || !is_other_sheet(a) || !is_other_sheet(b)) return false;
+      const auto edge = way(a, b.lat, b.lon), to = way(a, m.lat, m.lon);
+      const double share = (to.east * edge.east + to.north * edge.north) / (edge.length() * edge.length());
+      if (!(share >= 0 && share <= 1)) return false;
+      const Offset off{to.east - share * edge.east, to.north - share * edge.north};
+      if (off.length() > Rows::kReach || off.east * m.east + off.north * m.north > kSame) return false;
+      return around_.is_open_to(m, a.lat + share * (b.lat - a.lat), a.lon + share * (b.lon - a.lon));
+    });
+  }
+
+  const std::vector<Marker>& front_;
+  const Rows& rows_;
+  const Squares& lattice_;
+  const Surroundings& around_;
+  std::vector<double> along_;  ///< cells along the front up to each marker
+};
+
 }  // namespace
 
 Squares Squares::about(double lat, double lon, double cell_m) {
@@ -162,20 +227,20 @@ Squares Squares::about(double lat, double lon, double cell_m) {
 
 std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Squares& lattice, const Surroundings& around,
                               const std::vector<bool>& asked) {
-  std::vector<bool> deep(polygon.size()), beside(polygon.size());
-  for (std::size_t i = 0; i < polygon.size(); ++i) beside[i] = asked[i] && around.beside_coast(polygon[i]);
+  std::vector<bool> deep(polygon.size());
   std::optional<Raster> raster;
   std::optional<Rows> rows;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     if (!asked[i]) continue;
-    if (beside[i]) {
-      if (!rows) rows.emplace(polygon, lattice, beside);
-      deep[i] = deep_beside_coast(polygon[i], *rows, lattice, around);
-    } else {
+    if (!rows) rows.emplace(polygon, lattice, asked);
+    const bool beside = around.beside_coast(polygon[i]);
+    if (!beside) {
       if (!raster) raster.emplace(polygon, lattice);
       deep[i] = raster->deep(polygon[i], around.blocked);
     }
+    if (!deep[i] && (beside || !polygon[i].stuck)) deep[i] = deep_all_round(polygon[i], *rows, lattice, around);
   }
+  if (rows) Shadows{polygon, *rows, lattice, around}.add(deep, asked);
   return deep;
 }
 

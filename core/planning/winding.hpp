@@ -21,7 +21,29 @@ struct Marker {
   double left{};            ///< seconds of the step that were left at the wall
   bool idle{};              ///< can be of no more use, and stays
   bool joins{};             ///< the edge to the next marker closes a gap inside the reached set: no front
+  bool skirts{};            ///< joins, along a wall
+  bool closes{};            ///< joins, and not the next marker but the first of its loop: the next one begins another
+
+  void cut() {
+    joins = true;
+    skirts = false;
+  }
+  void skirt() { joins = skirts = true; }
+  /// Begins nothing and ends nothing: for a copy of a marker in the middle of its piece of the front.
+  void unjoin() { joins = skirts = closes = false; }
+  [[nodiscard]] bool ends_piece() const { return joins && !skirts; }
 };
+
+/// Calls `edge(from, to)` for all edges of the loops that a front consists of.
+template <class Edge>
+void for_each_edge(const std::vector<Marker>& front, const Edge& edge) {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    const bool last = front[i].closes || i + 1 == front.size();
+    edge(front[i], front[last ? first : i + 1]);
+    if (last) first = i + 1;
+  }
+}
 
 /// Cells in rows and columns about an origin, in radians: of one size in metres at the origin's latitude.
 struct Squares {
@@ -37,13 +59,17 @@ struct Surroundings {
   std::function<bool(const Marker&, double lat, double lon)> is_open_to;  ///< the straight way there is open
 };
 
-/// For each marker of a closed polygon whether it lies deep inside. In open water: the polygon winds about the middle of the
-/// marker's cell, and each of the eight cells around it has that too or is `blocked`. Beside a coast, where cells are too
-/// coarse: the polygon winds about each of 16 places around it that are open to it, at distances of 1/4 and 1/64
-/// cell; so a front in a narrow strait is not inside.
+/// For each marker of a front's loops whether it lies deep inside: one of
+/// - the front winds about the middle of the marker's cell, and each of the eight cells around it has that too or is `blocked`. Not beside
+///   a coast, where cells are too coarse;
+/// - it winds about each of 16 places around the marker that are open to it, at distances of 1/4 and 1/64 cell: so a front in a narrow
+///   strait is not inside. Not of what lies at other walls;
+/// - in its shadow: another sheet runs less than 1/4 cell before it, or beside it, and the same way. Two sheets that came round an
+///   island at nearly the same time stay that near for long, and where one of them was cut, its end would find no other. Told only from where a
+///   piece ends or was cut onwards, so that of two sheets that pass each other both are cut at one place.
 ///
-/// Time: edges × the rows they cross, plus one pass over the cells of the polygon's box (2 bytes each), plus for a marker
-/// beside a coast 16 times the edges in a row.
+/// Time: edges × the rows they cross, plus one pass over the cells of the polygon's box (2 bytes each), plus for each marker on the
+/// outside 16 times the edges in a row.
 /// Only of those that are `asked` after; of the others it is false.
 std::vector<bool> deep_inside(const std::vector<Marker>& polygon, const Squares& lattice, const Surroundings& around,
                               const std::vector<bool>& asked);

@@ -13,10 +13,12 @@
 #include "core/planning/registry.hpp"
 #include "daemon/world/workers.hpp"
 #include "tests/bench/case_suite.hpp"
+#include "tests/support/isochrones.hpp"
 
 // The sandwich: plan and bound on the same seas. For every case the bound with its bar, the share of the bar, how far the best
 // plan lies above the bound, and what the bound cost: steps of markers, most markers at once, time on the wall and of the processor.
-// A plan below its bound is printed as WRONG, and the program then fails.
+// A plan below its bound is printed as WRONG, and the program then fails. A surfacing of the plan that the front leaves outside is one that it
+// has lost, or is late for: how far the farthest lies beyond it is told.
 // Arguments: cases per speed (default 20); part of a name, when only some are wanted.
 
 using namespace glidehelm;
@@ -37,9 +39,19 @@ class Watch {
 };
 
 struct Worst {
-  double gap{}, bar{}, island_gap{}, island_bar{}, wall{}, processor{};
+  double gap{}, bar{}, island_gap{}, island_bar{}, wall{}, processor{}, outside{};
   int cases{}, bounded{}, wrong{};
 };
+
+/// How far the farthest of a plan's surfacings lies outside the front at its instant, metres.
+double farthest_outside(const planning::Plan& plan, const planning::Bound& bound) {
+  double farthest = 0;
+  for (const auto& stint : plan.stints)
+    for (const auto& isochrone : bound.isochrones)
+      if (std::abs(isochrone.t_s - stint.surface_s) < 1 && !test::encloses(isochrone, stint.surface))
+        farthest = std::max(farthest, test::distance_to(isochrone, stint.surface));
+  return farthest;
+}
 
 void run(const suite::Case& c, Worst& worst) {
   const std::array<ocean::Ocean, 1> members{c.ocean()};
@@ -51,6 +63,7 @@ void run(const suite::Case& c, Worst& worst) {
   settings.at_once = [](std::size_t runs, const std::function<void(std::size_t)>& body) {
     world::for_each_index(runs, 0, body);
   };
+  settings.surfacings_per_isochrone = 1;
   const Watch watch;
   const auto bound = planning::lower_bound(c.problem, c.ocean(), c.chart(), {}, settings);
   const double wall = watch.wall(), processor = watch.processor();
@@ -72,11 +85,13 @@ void run(const suite::Case& c, Worst& worst) {
   double& worst_bar = c.has_islands() ? worst.island_bar : worst.bar;
   worst_gap = std::max(worst_gap, gap);
   worst_bar = std::max(worst_bar, bar);
+  const double outside = arrives ? farthest_outside(*plan, *bound) : 0.0;
+  worst.outside = std::max(worst.outside, outside);
   std::printf(
       "%-28s plan %8.3f h, bound %8.3f h with bar %5.3f %%, gap %6.3f %%, %5.2f M steps, %5zu markers, %5.2f s, "
-      "processor %5.2f s%s\n",
+      "processor %5.2f s, surfacings outside by %.0f m%s\n",
       c.name.c_str(), travel / 3600, bound->travel_s / 3600, 100 * bar, 100 * gap,
-      1e-6 * static_cast<double>(bound->statistics.expansions), bound->most_markers, wall, processor,
+      1e-6 * static_cast<double>(bound->statistics.expansions), bound->most_markers, wall, processor, outside,
       wrong ? " WRONG" : "");
   std::fflush(stdout);
 }
@@ -84,9 +99,9 @@ void run(const suite::Case& c, Worst& worst) {
 void print(const char* title, const Worst& w) {
   std::printf(
       "%s: %d cases, %d bounded; worst gap and bar in open water %.3f %%, %.3f %%, among islands %.3f %%, %.3f %%; "
-      "slowest %.2f s, processor %.2f s; %d wrong\n",
+      "slowest %.2f s, processor %.2f s; surfacings outside by up to %.0f m; %d wrong\n",
       title, w.cases, w.bounded, 100 * w.gap, 100 * w.bar, 100 * w.island_gap, 100 * w.island_bar, w.wall, w.processor,
-      w.wrong);
+      w.outside, w.wrong);
 }
 
 }  // namespace

@@ -333,7 +333,7 @@ TEST_CASE("the bound is the same whether its runs come one after the other or at
       CHECK(one->most_markers == two->most_markers);
       REQUIRE(one->isochrones.size() == two->isochrones.size());
       for (std::size_t i = 0; i < one->isochrones.size(); ++i)
-        CHECK(one->isochrones[i].line == two->isochrones[i].line);
+        CHECK(one->isochrones[i].lines == two->isochrones[i].lines);
     }
 }
 
@@ -365,7 +365,9 @@ TEST_CASE("isochrones of still water are circles") {
   const auto bound = planning::lower_bound(p, {still, still}, chart::Chart{}, {}, settings);
   REQUIRE(bound);
   REQUIRE(bound->isochrones.size() >= 3);
-  for (const auto& line : bound->isochrones)
-    for (const auto& at : line.line)
-      CHECK(distance(p.start.fix, at).si() == Approx(test::kSpeed * (line.t_s - test::kT0)).epsilon(1e-3));
+  for (const auto& isochrone : bound->isochrones) {
+    REQUIRE(isochrone.lines.size() == 1);
+    for (const auto& at : isochrone.lines.front())
+      CHECK(distance(p.start.fix, at).si() == Approx(test::kSpeed * (isochrone.t_s - test::kT0)).epsilon(1e-3));
+  }
 }

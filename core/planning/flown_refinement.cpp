@@ -13,7 +13,8 @@ namespace glidehelm::planning {
 
 namespace {
 
-constexpr double kBuffer = 250.0;  // metres beyond the margin where nearness to land is taxed
+/// Metres beyond the margin where nearness to land is taxed: from one that can be followed to one that hardly holds a way off.
+constexpr std::array kBuffers{250.0, 50.0};
 constexpr int kMostRounds = 20;
 constexpr double kWorthwhile = 3e-6;  // of the travel time, won in a round
 /// From bold to careful.
@@ -25,36 +26,39 @@ class FlightRefinement {
   FlightRefinement(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart)
       : problem_{problem},
         waters_{waters_of(problem, ocean, chart)},
-        held_{problem, ocean, chart, problem.coast_margin},
-        steps_{kBuffer / 3, kBuffer / 3 / (problem.glider.horizontal_speed.si() * problem.schedule.stint.count())} {
-    held_.set_buffer(Metres{kBuffer});
-  }
+        held_{problem, ocean, chart, problem.coast_margin} {}
 
   RefinedFlight run(const Plan& plan, const Budget& budget) {
     RefinedFlight answer;
     best_s_ = plan.arrival_s;
     way_ = plan.stints;
-    for (int round = 0; round < kMostRounds && answer.statistics.expansions < budget.work; ++round) {
-      if (budget.expired && budget.expired()) {
-        answer.cut = true;
-        break;
-      }
-      ++answer.statistics.expansions;
-      if (!measure(answer.statistics)) break;
-      auto flown = improve();
-      if (!flown) break;
-      const double won = best_s_ - *flown->arrival_s;
-      best_s_ = *flown->arrival_s;
-      way_ = flown->stints;
-      answer.flown = std::move(flown);
-      if (won < kWorthwhile * (best_s_ - problem_.start.fix_s)) break;
-    }
+    for (const double buffer : kBuffers) polish(buffer, budget, answer);
     answer.statistics.cost_evaluations += flights_ * way_.size();
     answer.statistics.current_evaluations = held_.evaluations();
     return answer;
   }
 
  private:
+  /// Rounds with one buffer, until they no longer pay.
+  void polish(double buffer, const Budget& budget, RefinedFlight& answer) {
+    held_.set_buffer(Metres{buffer});
+    const double step = buffer / 3;  // finer than the slope of the toll
+    steps_ = {step, step / (problem_.glider.horizontal_speed.si() * problem_.schedule.stint.count())};
+    for (int round = 0; round < kMostRounds && answer.statistics.expansions < budget.work && !answer.cut; ++round) {
+      answer.cut = budget.expired && budget.expired();
+      if (answer.cut) return;
+      ++answer.statistics.expansions;
+      if (!measure(answer.statistics)) return;
+      auto flown = improve();
+      if (!flown) return;
+      const double won = best_s_ - *flown->arrival_s;
+      best_s_ = *flown->arrival_s;
+      way_ = flown->stints;
+      answer.flown = std::move(flown);
+      if (won < kWorthwhile * (best_s_ - problem_.start.fix_s)) return;
+    }
+  }
+
   /// The links of the way at hand, up to its arrival.
   bool measure(Statistics& statistics) {
     links_.clear();

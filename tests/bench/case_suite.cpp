@@ -111,6 +111,14 @@ std::vector<chart::Area> islands_between(GeoPoint from, GeoPoint to, int count, 
   return all;
 }
 
+std::string numbered(const char* kind, double speed, int i, bool islands) {
+  char text[64];
+  std::snprintf(text, sizeof text, "%s %.1f m/s %02d%s", kind, speed, i + 1, islands ? " islands" : "");
+  return text;
+}
+
+}  // namespace
+
 planning::Problem problem_of(GeoPoint from, GeoPoint to, MetresPerSecond speed) {
   planning::Problem p;
   p.start = {from, kT0};
@@ -120,14 +128,6 @@ planning::Problem problem_of(GeoPoint from, GeoPoint to, MetresPerSecond speed) 
   p.schedule.stint = p.schedule.first_stint = Seconds{8 * 3600.0};
   return p;
 }
-
-std::string numbered(const char* kind, double speed, int i, bool islands) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%s %.1f m/s %02d%s", kind, speed, i + 1, islands ? " islands" : "");
-  return text;
-}
-
-}  // namespace
 
 Case::Case(std::string name_, planning::Problem problem_, ocean::GriddedField field, std::vector<chart::Area> islands)
     : name{std::move(name_)},
@@ -142,8 +142,14 @@ Case::Case(std::string name_, planning::Problem problem_, ocean::AnalyticField f
       problem{std::move(problem_)},
       analytic_{std::make_shared<ocean::AnalyticField>(std::move(field))},
       chart_{std::make_shared<chart::Chart>()} {}
+Case::Case(std::string name_, planning::Problem problem_, ocean::Forecast forecast)
+    : name{std::move(name_)},
+      problem{std::move(problem_)},
+      forecast_{std::move(forecast)},
+      chart_{std::make_shared<chart::Chart>()} {}
 
 ocean::Ocean Case::ocean() const {
+  if (forecast_) return forecast_->ocean();
   if (gridded_) return {*gridded_, *gridded_};
   return {*analytic_, *analytic_};
 }

@@ -6,10 +6,11 @@
 #include <vector>
 
 #include "core/ocean/analytic.hpp"
+#include "core/ocean/forecast.hpp"
 #include "core/ocean/gridded.hpp"
 #include "core/planning/planner.hpp"
 
-/// The cases that all methods are compared on: synthetic, seeded, the same on every machine.
+/// The cases that all methods are compared on: synthetic, seeded, the same on every machine. Those on published currents: real_cases.hpp.
 namespace glidehelm::suite {
 
 /// A sea with its chart, and the way through it.
@@ -17,6 +18,7 @@ class Case {
  public:
   Case(std::string name, planning::Problem problem, ocean::GriddedField field, std::vector<chart::Area> islands = {});
   Case(std::string name, planning::Problem problem, ocean::AnalyticField field);
+  Case(std::string name, planning::Problem problem, ocean::Forecast forecast);
 
   std::string name;
   planning::Problem problem;
@@ -27,9 +29,13 @@ class Case {
  private:
   std::shared_ptr<const ocean::GriddedField> gridded_;
   std::shared_ptr<const ocean::AnalyticField> analytic_;
+  std::optional<ocean::Forecast> forecast_;
   std::shared_ptr<const chart::Chart> chart_;
   bool has_islands_{};
 };
+
+/// From a fix to within 2 km of a goal in stints of 8 h; departure and horizon are left to who asks.
+planning::Problem problem_of(GeoPoint from, GeoPoint to, MetresPerSecond speed);
 
 /// What the long cases are made of. Eddies of 28 to 62 km radius (where their flow is fastest) on a grid of 1/20°, the fastest flow of
 /// each between 0.1 and 0.35 m/s, either way round; where they overlap the flow is up to about twice that.

@@ -4,9 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/planning/cts_astar.hpp"
@@ -17,6 +21,7 @@
 #include "core/planning/registry.hpp"
 #include "core/planning/to_go.hpp"
 #include "tests/bench/case_suite.hpp"
+#include "tests/bench/real_cases.hpp"
 #include "tests/support/random_sea.hpp"
 
 // Every method on every case of the suite, in the form of the Thesis's tables 5.5, 5.6, 5.8 to 5.11, 5.13 and 5.14, and how far each is
@@ -24,7 +29,10 @@
 // can be arrived in. A plan earlier than its bound is printed as WRONG, and so is a case in which `best` is well behind another method; the
 // program then ends with 1.
 //
-//   suite [CASES [STARTS]]     cases of each kind (default: all), searches behind the best known plan (default 12)
+//   suite [--real] [CASES [STARTS]]     cases of each kind (default: all), searches behind the best known plan (default 12)
+//
+// The last sheet is that of the published currents (real_cases.hpp), where GLIDEHELM_DATA names the folder of the samples; with --real it is
+// the only one. A line for each of its ways says where it leads, or why it is left out.
 
 using namespace glidehelm;
 
@@ -225,11 +233,11 @@ void fill(Sheet& sheet, int starts) {
 }
 
 void print_cases(const Sheet& sheet) {
-  std::printf("\n%-26s %10s", sheet.title.c_str(), "best known");
+  std::printf("\n%-34s %10s", sheet.title.c_str(), "best known");
   for (const auto& [method, answers] : sheet.answers) std::printf(" %18s", method.c_str());
   std::printf("   hours, and above the best known\n");
   for (std::size_t i = 0; i < sheet.cases.size(); ++i) {
-    std::printf("%-26s %8.2f h", sheet.cases[i].name.c_str(), sheet.best_known[i] / 3600);
+    std::printf("%-34s %8.2f h", sheet.cases[i].name.c_str(), sheet.best_known[i] / 3600);
     for (const auto& [method, answers] : sheet.answers) {
       const auto& a = answers[i];
       if (a.arrives)
@@ -247,7 +255,7 @@ int print_certificates(const Sheet& sheet) {
   int early = 0, beaten = 0;
   double worst_gap = 0, worst_bar = 0, behind = 0;
   std::string behind_whom = "none";
-  std::printf("\n%-26s %10s %10s %8s %8s   the certificate\n", sheet.title.c_str(), "best", "bound", "bar", "gap");
+  std::printf("\n%-34s %10s %10s %8s %8s   the certificate\n", sheet.title.c_str(), "best", "bound", "bar", "gap");
   for (std::size_t i = 0; i < sheet.bounds.size(); ++i) {
     const auto& best = sheet.answers.at("best")[i];
     const auto& bound = sheet.bounds[i];
@@ -270,13 +278,13 @@ int print_certificates(const Sheet& sheet) {
       if (late > behind) behind = late, behind_whom = method + " in " + sheet.cases[i].name;
     }
     if (!bounded || !best.arrives) {
-      std::printf("%-26s %s\n", sheet.cases[i].name.c_str(), bound ? bound->reason.c_str() : "no bound");
+      std::printf("%-34s %s\n", sheet.cases[i].name.c_str(), bound ? bound->reason.c_str() : "no bound");
       continue;
     }
     const double gap = best.travel_s / bound->travel_s - 1, bar = bound->error_s / bound->travel_s;
     worst_gap = std::max(worst_gap, gap);
     worst_bar = std::max(worst_bar, bar);
-    std::printf("%-26s %8.2f h %8.2f h %6.3f %% %6.3f %%\n", sheet.cases[i].name.c_str(), best.travel_s / 3600,
+    std::printf("%-34s %8.2f h %8.2f h %6.3f %% %6.3f %%\n", sheet.cases[i].name.c_str(), best.travel_s / 3600,
                 bound->travel_s / 3600, 100 * bar, 100 * gap);
   }
   std::printf(
@@ -287,32 +295,54 @@ int print_certificates(const Sheet& sheet) {
   return early + beaten;
 }
 
-}  // namespace
+/// A sheet of cases that can be arrived in, filled and printed. In how many plans something is wrong.
+int run_arrivals(const std::string& title, std::vector<suite::Case> cases, int starts) {
+  Sheet sheet{title, std::move(cases), {}, {}, {}};
+  fill(sheet, starts);
+  print_cases(sheet);
+  print_arrivals(sheet);
+  return print_certificates(sheet);
+}
 
-int main(int argc, char** argv) {
-  const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
-  const int starts = argc > 2 ? std::atoi(argv[2]) : 12;
-  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+int run_synthetic(int count, int starts) {
   int wrong = 0;
   for (const double speed : {0.4, 0.2}) {
     char title[64];
     std::snprintf(title, sizeof title, "static 650 km, U = %.1f m/s", speed);
-    Sheet still{title, suite::static_cases(MetresPerSecond{speed}, std::min(count, 20)), {}, {}, {}};
-    fill(still, starts);
-    print_cases(still);
-    print_arrivals(still);
-    wrong += print_certificates(still);
+    wrong += run_arrivals(title, suite::static_cases(MetresPerSecond{speed}, std::min(count, 20)), starts);
     std::snprintf(title, sizeof title, "dynamic 3-4 days, U = %.1f m/s", speed);
     Sheet moving{title, suite::dynamic_cases(MetresPerSecond{speed}, std::min(count, 45)), {}, {}, {}};
     fill(moving, 0);
     wrong += print_distances(moving, "best");
   }
-  for (auto* const make : {suite::jet_cases, suite::analytic_cases}) {
-    Sheet sheet{make == suite::jet_cases ? "jet" : "analytic fields", make(), {}, {}, {}};
-    fill(sheet, starts);
-    print_cases(sheet);
-    print_arrivals(sheet);
-    wrong += print_certificates(sheet);
+  wrong += run_arrivals("jet", suite::jet_cases(), starts);
+  return wrong + run_arrivals("analytic fields", suite::analytic_cases(), starts);
+}
+
+int run_real(int count, int starts) {
+  const char* folder = std::getenv("GLIDEHELM_DATA");
+  std::error_code unreadable;
+  if (folder == nullptr || !std::filesystem::is_directory(std::string{folder} + "/currents", unreadable)) {
+    std::printf("\nreal fields: left out; set GLIDEHELM_DATA to the folder of the samples, which holds currents/\n");
+    return 0;
   }
+  auto real = suite::real_cases(folder);
+  std::printf("\nreal fields, the ways (U = 0.3 m/s, stints of 8 h; a field is held after its last time)\n");
+  for (const auto& note : real.notes) std::printf("  %s\n", note.c_str());
+  if (static_cast<std::size_t>(count) < real.cases.size())
+    real.cases.erase(real.cases.begin() + count, real.cases.end());
+  return real.cases.empty() ? 0 : run_arrivals("real fields", std::move(real.cases), starts);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool only_real = argc > 1 && std::strcmp(argv[1], "--real") == 0;
+  const int first = only_real ? 2 : 1;
+  const int count = argc > first ? std::atoi(argv[first]) : 1000;
+  const int starts = argc > first + 1 ? std::atoi(argv[first + 1]) : 12;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  int wrong = only_real ? 0 : run_synthetic(count, starts);
+  wrong += run_real(count, starts);
   return wrong == 0 ? 0 : 1;
 }

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "core/ocean/flooded.hpp"
 #include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
 #include "core/planning/front.hpp"
@@ -173,13 +174,13 @@ class Certificate {
     const double arrival = arrivals[0];
     const double error = arrivals.size() > 1 ? kDoubt * (arrivals[1] - arrival) : runs[0].until - arrival;
     double late = late_at_walls();
-    if (met_shallows_ && !met_dry_) {
-      // Do the shallows matter? Without a chart the front has no corners to go round, and what it says is a bound in any case.
-      // Walls of the field itself cannot be taken away.
+    if (met_shallows_ || met_dry_) {
+      // Do these walls matter? Without a chart, and with the field's dry places flooded, the front has no corners to go round, and what it says is
+      // a bound in any case. It may be late by a spacing where currents end at a flooded shore.
       const auto open = run(0, 1, runs[0].until, 0, true);
       if (!count(open)) return cut();
       const double detour = open.reached() ? std::max(0.0, arrival - *open.arrival) : 0.0;
-      if (!met_dry_) late = std::min(late, detour);
+      late = std::min(late, detour + (met_dry_ ? spacing_ / problem_.glider.horizontal_speed.si() : 0.0));
     }
     if (arrival - late > (1 + kLeastError) * known_)
       return nothing(
@@ -251,8 +252,10 @@ class Certificate {
   [[nodiscard]] Outcome run(double raised, double coarser, double until, int isochrones,
                             bool open_water = false) const {
     static const chart::Chart kOpen;
+    const ocean::FloodedField dive{ocean_.dive}, surface{ocean_.surface};
+    const ocean::Ocean flooded{dive, surface};
     Run one{problem_,
-            ocean_,
+            open_water ? flooded : ocean_,
             open_water ? kOpen : chart_,
             problem_.glider.horizontal_speed.si() * (1 + raised),
             coarser * spacing_,

@@ -54,8 +54,8 @@ inline constexpr double kSpeedBar = 0.005;
 /// late by e and the next by 2.25 e. Twice the difference of the two earliest, 2.5 e then, and `kLeastError` of the time are the
 /// error bar, and `travel_s` has it subtracted. Where the front met coasts or borders of areas, which it walks round
 /// (wall_walk.hpp), its shortest edge there, 0.15 of the spacing, is subtracted as well. Behind other walls it is late by a few
-/// spacings: where it met shallows, the time of six spacings comes on top, but no more than the detour that the chart costs (another
-/// run, without it, tells); where it met the field's own land or water without data, all of it. Passages between coasts down to
+/// spacings: where it met shallows, or the field's own land or water without data, the time of six spacings comes on top, but no more than
+/// the detour that these walls cost (another run, without chart and with the dry places flooded, tells), and one spacing for places that are flooded. Passages between coasts down to
 /// some 20 m are gone through whatever the spacing; one between other walls may be lost when it is narrower than a spacing. Where
 /// the goal stays unreached by all three the front is moved again with the speed raised by `kSpeedBar`, and only when that does not reach
 /// it either it is `unreachable`.

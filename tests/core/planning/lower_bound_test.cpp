@@ -201,8 +201,27 @@ TEST_CASE("land that only the field knows is rounded at its corners, with their 
     CHECK(bound->travel_s <= way / test::kSpeed);
     // Six spacings are the allowance for corners: with the difference of two runs alone (714 s at 920 m, where the front is 2 700 s
     // late) the bound would be later than the truth.
-    CHECK(bound->error_s >= 6 * spacing / test::kSpeed);
+    // The detour round the wall is as long as that at 920 m, and the bar is no wider than it and a spacing.
+    const double detour = way - (30e3 - 100);
+    CHECK(bound->error_s >= std::min(6 * spacing, detour) / test::kSpeed);
     CHECK(bound->travel_s + bound->error_s <= way / test::kSpeed + 6 * spacing / test::kSpeed);
+  }
+}
+
+TEST_CASE("land of the field beside the way costs one spacing, not the time of corners") {
+  // The front meets the block on its way to all sides; the straight way does not. So the bound without the block is the bound, and what it takes
+  // off is the spacing for flooded places, the order's doubt (in still water next to nothing) and the floor of 0.05 %.
+  const WithMask water{-6e3, 3e3, 6e3, 9e3};
+  const auto p = submerged(test::on_equator(-15e3, 0), test::on_equator(15e3, 0), 100);
+  const double truth = (30e3 - 100) / test::kSpeed;
+  for (const double spacing : {230.0, 460.0}) {
+    const auto bound = planning::lower_bound(p, {water, water}, chart::Chart{}, {}, {.spacing = Metres{spacing}});
+    REQUIRE(bound);
+    REQUIRE(bound->kind == Bound::Kind::arrival);
+    CHECK(bound->travel_s <= truth);
+    CHECK(bound->error_s <= spacing / test::kSpeed + 0.001 * truth);
+    CHECK(bound->error_s >= spacing / test::kSpeed);
+    CHECK(bound->travel_s + bound->error_s == Approx(truth).epsilon(1e-3));
   }
 }
 

@@ -18,8 +18,8 @@ constexpr std::array kBuffers{250.0, 50.0};
 constexpr int kMostRounds = 20;
 constexpr double kWorthwhile = 3e-6;  // of the travel time, won in a round
 /// From bold to careful.
-constexpr std::array<Damping, 4> kDampings{{{0, 0}, {0, 1}, {4, 4}, {32, 32}}};
-constexpr std::array kShares{1.0, 0.3};
+constexpr std::array<Damping, 6> kDampings{{{0, 0}, {0, 1}, {1, 1}, {4, 4}, {32, 32}, {128, 128}}};
+constexpr std::array kShares{1.0, 0.5, 0.2};
 
 class FlightRefinement {
  public:
@@ -32,7 +32,11 @@ class FlightRefinement {
     RefinedFlight answer;
     best_s_ = plan.arrival_s;
     way_ = plan.stints;
-    for (const double buffer : kBuffers) polish(buffer, budget, answer);
+    for (const double buffer : kBuffers) {
+      polish(buffer, budget, answer);
+      const bool taxed = std::any_of(links_.begin(), links_.end(), [](const ChainLink& l) { return l.toll.value > 0; });
+      if (!taxed) break;  // no land is near
+    }
     answer.statistics.cost_evaluations += flights_ * way_.size();
     answer.statistics.current_evaluations = held_.evaluations();
     return answer;

@@ -21,7 +21,7 @@ struct RefinedFlight {
 /// surfacings with held headings (they differ from the law's by about a hundredth), and each step that they ask for is flown by the law, with the
 /// feedback on where the glider really dives. A step counts only when that flight arrives earlier, so the answer is never worse.
 ///
-/// A round is thirteen lanes for each stint and up to a dozen flights; `Budget::work` counts rounds. Deterministic.
+/// A round is thirteen lanes for each stint and up to three dozen flights, few but in the last one; `Budget::work` counts rounds. Deterministic.
 RefinedFlight refine_flown(const Plan& plan, const Problem& problem, const ocean::Ocean& ocean,
                            const chart::Chart& chart, const Budget& budget);
 

@@ -59,7 +59,7 @@ TEST_CASE(
       const auto again = vehicle::fly_headings(wanted, flight, waters);
       REQUIRE(again.arrival_s);
       CHECK(*again.arrival_s - test::kT0 == Approx(time).margin(1e-3));
-      // At an optimum a turn by ε gains nothing to first order. Rounds end below 3e-6 of some 30 h, 0.3 s, or where none of eight steps is
+      // At an optimum a turn by ε gains nothing to first order. Rounds end below 3e-6 of some 30 h, 0.3 s, or where none of eighteen steps is
       // earlier: the least share of a damped one is a hundredth of a turn, so of a turn of 1° that would gain g a step that gains 0.02·g is
       // looked for. 0.3 s of that are 15 s.
       for (std::size_t k = 0; k < wanted.size(); ++k)

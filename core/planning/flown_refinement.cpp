@@ -21,17 +21,24 @@ constexpr double kWorthwhile = 3e-6;  // of the travel time, won in a round
 constexpr std::array<Damping, 6> kDampings{{{0, 0}, {0, 1}, {1, 1}, {4, 4}, {32, 32}, {128, 128}}};
 constexpr std::array kShares{1.0, 0.5, 0.2};
 
+/// Clearance beyond the margin that refined flights keep: what another integrator, and the chords of its steps, may differ by. The verifier flies
+/// the list with its own, and refuses a file that is nearer than the margin.
+Metres spare_of(const Problem& problem) { return 0.005 * (problem.glider.horizontal_speed * problem.schedule.stint); }
+
 class FlightRefinement {
  public:
   FlightRefinement(const Problem& problem, const ocean::Ocean& ocean, const chart::Chart& chart)
       : problem_{problem},
-        waters_{waters_of(problem, ocean, chart)},
-        held_{problem, ocean, chart, problem.coast_margin} {}
+        waters_{ocean, chart, problem.coast_margin + spare_of(problem)},
+        held_{problem, ocean, chart, waters_.margin} {}
 
   RefinedFlight run(const Plan& plan, const Budget& budget) {
     RefinedFlight answer;
-    best_s_ = plan.arrival_s;
     way_ = plan.stints;
+    best_s_ = problem_.horizon_s;
+    if (fly([&](std::size_t k, GeoPoint) { return way_[k].heading; }).lost)
+      return answer;  // nearer to land than the spare
+    best_s_ = plan.arrival_s;
     for (const double buffer : kBuffers) {
       polish(buffer, budget, answer);
       const bool taxed = std::any_of(links_.begin(), links_.end(), [](const ChainLink& l) { return l.toll.value > 0; });

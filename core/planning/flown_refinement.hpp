@@ -19,7 +19,8 @@ struct RefinedFlight {
 /// refine() polishes held headings, and the law leaves them for the last minutes of each stint. Where neighbouring ways part, a flight drifts off
 /// what was polished and is kept to it by force. So here the way that is improved is the flight itself: links are measured around its own
 /// surfacings with held headings (they differ from the law's by about a hundredth), and each step that they ask for is flown by the law, with the
-/// feedback on where the glider really dives. A step counts only when that flight arrives earlier, so the answer is never worse.
+/// feedback on where the glider really dives. A step counts only when that flight arrives earlier, so the answer is never worse. Refined flights keep
+/// half a per cent of a stint's way beyond the coastal margin, for the verifier's own integrator; a plan that is nearer to land is left alone.
 ///
 /// A round is thirteen lanes for each stint and up to three dozen flights, few but in the last one; `Budget::work` counts rounds. Deterministic.
 RefinedFlight refine_flown(const Plan& plan, const Problem& problem, const ocean::Ocean& ocean,

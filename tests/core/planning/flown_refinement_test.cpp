@@ -84,9 +84,20 @@ TEST_CASE("a refined flight keeps clear of land") {
   const auto plan = searched(p, ocean, chart);
   REQUIRE(plan.reaches_goal());
   const auto refined = planning::refine_flown(plan, p, ocean, chart, {});
-  if (!refined.flown) return;
+  REQUIRE(refined.flown);
   CHECK(*refined.flown->arrival_s < plan.arrival_s);
-  for (const auto& s : refined.flown->stints) CHECK(chart.clearance(s.surface).si() >= p.coast_margin.si());
+  // Flown with more margin than asked for, by nearly the half per cent of a stint's way that is kept for other integrators, it still arrives.
+  std::vector<Heading> wanted;
+  for (const auto& stint : refined.flown->stints) wanted.push_back(stint.heading);
+  auto waters = planning::waters_of(p, ocean, chart);
+  waters.margin = p.coast_margin + 0.0049 * (p.glider.horizontal_speed * p.schedule.stint);
+  const auto flown = vehicle::fly_headings(wanted, planning::flight_of(p), waters);
+  REQUIRE(flown.arrival_s);
+  CHECK(*flown.arrival_s - *refined.flown->arrival_s == Approx(0).margin(1e-3));
+  // A glider that must keep twice the margin more than this way does is left with its plan.
+  auto strict = p;
+  strict.coast_margin = p.coast_margin + Metres{2000};
+  CHECK_FALSE(planning::refine_flown(plan, strict, ocean, chart, {}).flown);
 }
 
 TEST_CASE("refinement of a flight stops at its work, says where a clock cut it, and leaves what does not arrive") {

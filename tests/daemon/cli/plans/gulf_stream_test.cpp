@@ -73,8 +73,8 @@ TEST_CASE(
   CHECK(round["status"] == "reaches_goal");
   const double travel = round["travel_time_s"], bound = round["lower_bound_s"], bar = round["lower_bound_error_s"];
   CHECK(travel >= bound);
-  // 0.8 % over what the front says is what stints of one heading may cost (product page, "Must show"); the bar, 3 % here, is six spacings of
-  // the front, because without a coastline the model's mask is land.
+  // 0.8 % over what the front says is what stints of one heading may cost (product page, "Must show"); the bar is a spacing of the front
+  // and more, because without a coastline the model's mask is land.
   CHECK(travel <= 1.008 * (bound + bar));
   const auto& stints = round["stints"];
   REQUIRE(stints.size() > 10);
@@ -107,6 +107,6 @@ TEST_CASE("real data: where the searches end in different valleys of the Gulf St
   std::printf("off Florida: %.1f h, with the searches alone %.1f h, bound %.1f h\n", travel / 3600, alone / 3600,
               bound / 3600);
   CHECK(travel >= bound);
-  CHECK(travel < 1.03 * bound);  // the bar of a front beside a mask is 2 % here
+  CHECK(travel < 1.03 * bound);
   CHECK(travel < alone);
 }

@@ -203,8 +203,9 @@ class Shadows {
     return rows_.any_near(m, [&](const Marker& a, const Marker& b) {
       if (a.joins || !alike(a) || !alike(b) || !is_other_sheet(a) || !is_other_sheet(b)) return false;
       const auto edge = way(a, b.lat, b.lon), to = way(a, m.lat, m.lon);
-      const double share = (to.east * edge.east + to.north * edge.north) / (edge.length() * edge.length());
-      if (!(share >= 0 && share <= 1)) return false;
+      const double length = edge.length(), along = to.east * edge.east + to.north * edge.north;
+      if (!(length > 0 && along >= 0 && along <= length * length)) return false;
+      const double share = along / (length * length);
       const Offset off{to.east - share * edge.east, to.north - share * edge.north};
       if (off.length() > Rows::kReach || off.east * m.east + off.north * m.north > kSame) return false;
       return around_.is_open_to(m, a.lat + share * (b.lat - a.lat), a.lon + share * (b.lon - a.lon));

@@ -266,7 +266,9 @@ Expected<GridView, GridError> open_grid(std::span<const std::byte> bytes) {
   Cursor fixed{bytes.subspan(kMagic.size())};
   const auto version = fixed.take<std::uint32_t>();
   if (version != kGridVersion && version != kGridVersionWithoutWater)
-    return fault("version " + std::to_string(version) + ", allowed is " + std::to_string(kGridVersion), "header");
+    return fault("version " + std::to_string(version) + ", allowed is " + std::to_string(kGridVersionWithoutWater) +
+                     " or " + std::to_string(kGridVersion),
+                 "header");
   const auto header_size = fixed.take<std::uint32_t>();
   const auto header_crc = fixed.take<std::uint32_t>();
   const auto payload_crc = fixed.take<std::uint32_t>();

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "core/base/units.hpp"
 
@@ -10,26 +12,33 @@ using namespace glidehelm::mission;
 
 namespace {
 
-/// Dives of a glider whose speed is off by `speed` and whose heading by `bias` in water whose forecast is off by (`east`,
-/// `north`); the wanted heading turns by `turn` degrees from dive to dive.
-ErrorFilter fly(int dives, double speed, double bias, double east, double north, double turn, double apart_m = 5000) {
-  ErrorFilter filter;
+/// Dives along a way that turns by `turn` degrees from one to the next; `residual(h)` is (east, north) of a dive with heading h.
+template <class Residual>
+ErrorFilter flown(ErrorFilter filter, int dives, double first, double turn, double apart_m, const Residual& residual) {
   GeoPoint at = geo_point(40, 5);
   for (int k = 0; k < dives; ++k) {
-    const double h = degrees(20 + turn * k).si();
+    const double h = degrees(first + turn * k).si();
     DiveResidual d;
     d.at = at;
     d.at_s = 1.7e9 + 15300.0 * k;
     d.heading_east = std::sin(h);
     d.heading_north = std::cos(h);
     d.spread = 0.02;
-    const double u = 0.3 + speed;
-    d.east = u * std::sin(h + bias) - 0.3 * std::sin(h) + east;
-    d.north = u * std::cos(h + bias) - 0.3 * std::cos(h) + north;
+    std::tie(d.east, d.north) = residual(h);
     filter.see(d);
     at = destination(at, Bearing{Radians{h}}, Metres{apart_m});
   }
   return filter;
+}
+
+/// Dives of a glider whose speed is off by `speed` and whose heading by `bias` in water whose forecast is off by (`east`,
+/// `north`); the wanted heading turns by `turn` degrees from dive to dive.
+ErrorFilter fly(int dives, double speed, double bias, double east, double north, double turn, double apart_m = 5000) {
+  return flown(ErrorFilter{}, dives, 20, turn, apart_m, [&](double h) {
+    const double u = 0.3 + speed;
+    return std::pair{u * std::sin(h + bias) - 0.3 * std::sin(h) + east,
+                     u * std::cos(h + bias) - 0.3 * std::cos(h) + north};
+  });
 }
 
 }  // namespace
@@ -101,26 +110,14 @@ TEST_CASE("far away the error of the forecast is forgotten, the speed is not") {
 TEST_CASE("another first guess of the speed counts as if it had been there from the beginning") {
   // The filter is linear in the guess but for the bias, whose column has U0. Without a first spread only its wander is left of it: 2.9e-5 rad² over these
   // dives, times the change of U0², 0.0061, is 2e-7 of variances around 0.01, so 2e-5 of a gain and of an innovation of 0.02 m/s.
-  const auto flown = [](double guess) {
-    ErrorFilter filter{{guess, 0.03, 0, 0.10, 30'000, 24 * 3600.0}};
-    GeoPoint at = geo_point(40, 5);
-    for (int k = 0; k < 5; ++k) {
-      const double h = degrees(70.0 * k).si(), speed = 0.32;
-      DiveResidual d;
-      d.at = at;
-      d.at_s = 1.7e9 + 15300.0 * k;
-      d.heading_east = std::sin(h);
-      d.heading_north = std::cos(h);
-      d.spread = 0.02;
-      d.east = (speed - guess) * std::sin(h) + 0.04;
-      d.north = (speed - guess) * std::cos(h) - 0.02;
-      filter.see(d);
-      at = destination(at, Bearing{Radians{h}}, Metres{5000});
-    }
-    return filter;
+  const auto guessed = [](double guess) {
+    return flown(ErrorFilter{{guess, 0.03, 0, 0.10, 30'000, 24 * 3600.0}}, 5, 0, 70, 5000, [&](double h) {
+      const double speed = 0.32;
+      return std::pair{(speed - guess) * std::sin(h) + 0.04, (speed - guess) * std::cos(h) - 0.02};
+    });
   };
-  const auto wanted = flown(0.31);
-  auto moved = flown(0.30);
+  const auto wanted = guessed(0.31);
+  auto moved = guessed(0.30);
   const double shown = 0.30 + moved.speed_error();
   moved.move_guess(0.31, 0.03);
   CHECK(moved.setup() == wanted.setup());

@@ -208,6 +208,32 @@ TEST_CASE("land that only the field knows is rounded at its corners, with their 
   }
 }
 
+TEST_CASE("a current along a shore that only the field knows is not missed where the shore is flooded") {
+  // Dry south of the equator, a current to the east north of it; start and goal 20 m off the shore. Straight along it is the fastest way, (d − r)/(U + c).
+  // In the flooded run markers beside the shore meet water that stands still: the spacing that is taken off for them must be enough.
+  struct Shore {
+    [[nodiscard]] Expected<ocean::Sample, ocean::NoCurrent> sample(GeoPoint p, Depth, double) const {
+      if (p.lat.radians() < 0) return unexpected(ocean::NoCurrent::land);
+      return ocean::Sample{{MetresPerSecond{0.25}, MetresPerSecond{0}}, false};
+    }
+    [[nodiscard]] ocean::Coverage coverage() const { return test::box_around(geo_point(0, 0), 1.0); }
+    [[nodiscard]] MetresPerSecond fastest() const { return MetresPerSecond{0.25}; }
+  };
+  const Shore shore;
+  const auto p = submerged(test::on_equator(-15e3, 20), test::on_equator(15e3, 20), 100);
+  const double truth = (30e3 - 100) / (test::kSpeed + 0.25);
+  for (const double spacing : {230.0, 460.0, 920.0}) {
+    const auto bound = planning::lower_bound(p, {shore, shore}, chart::Chart{}, {}, {.spacing = Metres{spacing}});
+    REQUIRE(bound);
+    REQUIRE(bound->kind == Bound::Kind::arrival);
+    INFO("spacing " << spacing << " bound " << bound->travel_s << " error " << bound->error_s << " truth " << truth);
+    CHECK(bound->travel_s <= truth);
+    // With the default spacing: the floor of 0.05 %, the doubt, and six spacings at the most. Coarser fronts creep along such a shore, and their
+    // doubt says so: the bar is wide then.
+    if (spacing == 230.0) CHECK(bound->travel_s >= truth - 6 * spacing / test::kSpeed - 0.005 * truth);
+  }
+}
+
 TEST_CASE("land of the field beside the way costs one spacing, not the time of corners") {
   // The front meets the block on its way to all sides; the straight way does not. So the bound without the block is the bound, and what it takes
   // off is the spacing for flooded places, the order's doubt (in still water next to nothing) and the floor of 0.05 %.

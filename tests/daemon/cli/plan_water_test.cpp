@@ -7,7 +7,7 @@
 #include "daemon/cli/field_info.hpp"
 #include "daemon/cli/plan.hpp"
 #include "daemon/cli/polar.hpp"
-#include "tests/daemon/cli/field_verb.hpp"
+#include "tests/daemon/cli/planned.hpp"
 #include "tests/support/data.hpp"
 
 // A body in the water of its forecast, from the published file to the answer.
@@ -48,14 +48,7 @@ std::string mission_in(const std::string& file, const std::string& vehicle) {
 }
 
 nlohmann::json plan(const test::ScratchFolder& folder, const std::string& mission) {
-  test::write_bytes(folder / "m.yaml", mission);
-  cli::PlanOptions options;
-  options.mission = folder / "m.yaml";
-  options.json = true;
-  const auto said = test::run_verb(cli::run_plan, options);
-  INFO(said.err << said.out);
-  REQUIRE((said.code == 0 || said.code == 1));
-  return nlohmann::json::parse(said.out);
+  return test::planned(folder, mission, {0, 1});
 }
 
 }  // namespace

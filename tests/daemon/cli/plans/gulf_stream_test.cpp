@@ -6,7 +6,7 @@
 #include <string>
 
 #include "daemon/cli/plan.hpp"
-#include "tests/daemon/cli/field_verb.hpp"
+#include "tests/daemon/cli/planned.hpp"
 #include "tests/support/data.hpp"
 
 using namespace glidehelm;
@@ -29,15 +29,7 @@ std::string upstream(const std::string& data, const std::string& more) {
 }
 
 nlohmann::json plan(const std::string& mission, int code) {
-  const test::ScratchFolder folder;
-  test::write_bytes(folder / "m.yaml", mission);
-  cli::PlanOptions options;
-  options.mission = folder / "m.yaml";
-  options.json = true;
-  const auto said = test::run_verb(cli::run_plan, options);
-  INFO(said.err << said.out);
-  REQUIRE(said.code == code);
-  return nlohmann::json::parse(said.out);
+  return test::planned(test::ScratchFolder{}, mission, {code});
 }
 
 /// 194 km up the Stream off Florida, the goal in the middle of it: the searches miss it or come in the wrong way.

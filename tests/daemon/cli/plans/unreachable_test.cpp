@@ -3,7 +3,7 @@
 #include <string>
 
 #include "daemon/cli/plan.hpp"
-#include "tests/daemon/cli/field_verb.hpp"
+#include "tests/daemon/cli/planned.hpp"
 
 using namespace glidehelm;
 
@@ -30,7 +30,6 @@ struct EastwardDesk {
                           "approval: {mode: manual}\nschedule: {stint_h: " +
                           way.stint_h + "}\n" + more);
     options.mission = folder / "m.yaml";
-    options.json = true;
   }
   explicit EastwardDesk(double east, const std::string& more = "", const Way& way = kLong)
       : EastwardDesk{
@@ -38,13 +37,7 @@ struct EastwardDesk {
             "speed_scale_m_per_s: 1, params: {u: " +
                 std::to_string(east) + ", v: 0}}\n" + more,
             way} {}
-  /// The document of a plan that comes without a clock: no --budget, every stage to the end of its work.
-  [[nodiscard]] nlohmann::json plan(int code) const {
-    const auto said = test::run_verb(cli::run_plan, options);
-    INFO(said.err << said.out);
-    REQUIRE(said.code == code);
-    return nlohmann::json::parse(said.out);
-  }
+  [[nodiscard]] nlohmann::json plan(int code) const { return test::planned(options, {code}); }
 };
 
 void check_proven(const nlohmann::json& plan) {

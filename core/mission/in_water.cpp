@@ -38,6 +38,20 @@ std::string_view word(WaterFrom from) {
   return "?";
 }
 
+std::string_view words(WaterFrom from) {
+  switch (from) {
+    case WaterFrom::none:
+      return "no water";
+    case WaterFrom::mission:
+      return "the mission's water";
+    case WaterFrom::forecast:
+      return "the forecast's water";
+    case WaterFrom::climatology:
+      return "the climatological profile";
+  }
+  return "?";
+}
+
 namespace {
 
 Expected<Mission, std::string> weighed(Mission m, std::span<const ocean::WaterLayer> layers) {

@@ -25,6 +25,8 @@ Seconds stint_of_half_cycles(int half_cycles, const Mission& m);
 enum class WaterFrom { none, mission, forecast, climatology };
 /// "none", "mission", "forecast", "climatology".
 std::string_view word(WaterFrom from);
+/// For sentences: "no water", "the mission's water", "the forecast's water", "the climatological profile".
+std::string_view words(WaterFrom from);
 
 /// A mission whose vehicle was put into water.
 struct InWater {

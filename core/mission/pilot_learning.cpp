@@ -62,11 +62,9 @@ void Pilot::tell_water(const InWater& vehicle) {
     say(Level::alert, "water",
         fmt::format("the body of vehicle.force_balance does not fly in the forecast's water ({}): {}", water_->words,
                     vehicle.refused));
-  const std::string whose =
-      vehicle.from == WaterFrom::forecast ? fmt::format("the forecast's water ({})", water_->words)
-      : !vehicle.refused.empty()          ? "the climatological profile"
-                                 : fmt::format("the climatological profile, for want of the forecast's water{}",
-                                               water_->words.empty() ? "" : " (" + water_->words + ")");
+  std::string whose{words(vehicle.from)};
+  if (vehicle.from == WaterFrom::climatology && vehicle.refused.empty()) whose += ", for want of the forecast's water";
+  if (vehicle.refused.empty() && !water_->words.empty()) whose += " (" + water_->words + ")";
   say(Level::info, "water",
       fmt::format("by its forces the glider makes {:.3f} m/s, {:.1f} deg below the horizon, in {}",
                   vehicle.mission.horizontal_speed.si(), in_degrees(vehicle.mission.glide_angle), whose));

@@ -135,10 +135,9 @@ Json plan_json(const Case& c, const std::optional<mission::Candidate>& found,
 std::string force_balance_text(const Case& c) {
   if (c.water == mission::WaterFrom::none) return "";
   const auto& words = c.ocean->forecast.facts().water.words;
-  const std::string whose = c.water == mission::WaterFrom::mission ? "the mission's water"
-                            : c.water == mission::WaterFrom::forecast
-                                ? "the forecast's water: " + words
-                                : "the climatological profile" + (words.empty() ? "" : "; " + words);
+  std::string whose{mission::words(c.water)};
+  if (c.water != mission::WaterFrom::mission && !words.empty())
+    whose += (c.water == mission::WaterFrom::forecast ? ": " : "; ") + words;
   return fmt::format("by its forces the glider makes {:.3f} m/s, {:.1f} degrees below the horizon, in {}\n",
                      c.mission.horizontal_speed.si(), in_degrees(c.mission.glide_angle), whose);
 }

@@ -209,17 +209,14 @@ int run_polar(const PolarOptions& options, world::World& world, std::ostream& ou
     out << json_of(curves, options.depth_m, whose, *yo).dump(2) << "\n";
     return 0;
   }
-  const char* in = whose == mission::WaterFrom::mission    ? "the mission's water"
-                   : whose == mission::WaterFrom::forecast ? "the forecast's water"
-                                                           : "the climatological profile";
   out << fmt::format(
       "In {}, over the yo between {:.0f} and {:.0f} m: {:.3f} m/s horizontally, path {:.1f} degrees below the horizon, "
       "{:.0f} "
       "s down and {:.0f} s "
       "up.\nAt {:.0f} m, by pump volume, the pitch that goes forward fastest:\n\n  pump cm3   pitch   horizontal m/s   "
       "vertical m/s\n",
-      in, climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle), yo->down.count(),
-      yo->up.count(), options.depth_m);
+      mission::words(whose), climb_to.si(), dive_depth.si(), yo->horizontal.si(), in_degrees(yo->glide_angle),
+      yo->down.count(), yo->up.count(), options.depth_m);
   for (const auto& curve : curves)
     if (const auto* best = fastest_of(curve))
       out << fmt::format("  {:+8.0f} {:5.0f}°   {:14.3f}   {:+12.3f}\n", best->pumped_m3 / kCubicCentimetre,

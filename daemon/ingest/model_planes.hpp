@@ -29,6 +29,7 @@ bool in_area(const Mesh& mesh, std::size_t point, const std::optional<Area>& are
 /// The rows and columns with a point in the area, and two more on each side.
 Result<Window> window_of(const Mesh& mesh, const std::optional<Area>& area);
 
+/// The window of a plane with `columns` columns, row by row.
 template <class T>
 std::vector<T> cut_out(const std::vector<T>& whole, std::size_t columns, const Window& w) {
   std::vector<T> part;

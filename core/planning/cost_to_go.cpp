@@ -5,7 +5,7 @@
 #include "core/base/local_metric.hpp"
 #include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
-#include "core/planning/goal_distance.hpp"
+#include "core/vehicle/goal_distance.hpp"
 
 namespace glidehelm::planning {
 
@@ -66,7 +66,7 @@ class ByDistance {
   }
 
  private:
-  GoalDistance goal_;
+  vehicle::GoalDistance goal_;
   double radius_, fastest_, side_;
 };
 

@@ -7,10 +7,10 @@
 #include "core/planning/cts_lanes.hpp"
 #include "core/planning/envelope.hpp"
 #include "core/planning/flight.hpp"
-#include "core/planning/goal_distance.hpp"
 #include "core/planning/heading_sampling.hpp"
 #include "core/planning/search_grid.hpp"
 #include "core/planning/to_go.hpp"
+#include "core/vehicle/goal_distance.hpp"
 
 namespace glidehelm::planning {
 
@@ -344,7 +344,7 @@ class LabelSearch {
   const ocean::Ocean& ocean_;
   const Budget& budget_;
   vehicle::Disc goal_;
-  GoalDistance goal_distance_;
+  vehicle::GoalDistance goal_distance_;
   double speed_, stint_, horizon_;
   int at_stint_;  ///< stints of a way of least distance; 0 under MinTime
   Envelope reach_;

@@ -17,6 +17,7 @@ namespace {
 constexpr std::array kBuffers{250.0, 50.0};
 constexpr int kMostRounds = 20;
 constexpr double kWorthwhile = 3e-6;  // of the travel time, won in a round
+constexpr double kIncredible = 0.1;   // of the travel time: a step that promises more has left what its quadratics know
 /// From bold to careful.
 constexpr std::array<Damping, 6> kDampings{{{0, 0}, {0, 1}, {1, 1}, {4, 4}, {32, 32}, {128, 128}}};
 constexpr std::array kShares{1.0, 0.5, 0.2};
@@ -88,12 +89,16 @@ class FlightRefinement {
     return !links_.empty();
   }
 
-  /// The first step, from bold to careful, whose headings are earlier when they are flown by themselves.
+  /// The first step, from bold to careful, whose headings are earlier when they are flown by themselves. Not flown are those that promise what is
+  /// not worthwhile, or what cannot be.
   std::optional<vehicle::FlownList> improve() {
+    const double travel = best_s_ - problem_.start.fix_s;
     for (const auto damping : kDampings) {
-      const auto gains = gains_of(links_, to_end_, damping);
+      const auto step = step_along(links_, to_end_, damping);
+      const double promised = step.promises / problem_.glider.horizontal_speed.si();
+      if (!(promised >= kWorthwhile * travel && promised <= kIncredible * travel)) continue;
       for (const double share : kShares) {
-        const auto found = fly([&](std::size_t k, GeoPoint dive) { return answer(gains[k], share, k, dive); });
+        const auto found = fly([&](std::size_t k, GeoPoint dive) { return answer(step.gains[k], share, k, dive); });
         if (!found.arrival_s) continue;
         auto flown =
             fly([&](std::size_t k, GeoPoint) { return (k < found.stints.size() ? found.stints[k] : way_[k]).heading; });

@@ -86,8 +86,8 @@ std::optional<MeasuredLink> measure_link(HeldFlight& flight, int k, double lat, 
   return m;
 }
 
-std::vector<Gain> gains_of(const std::vector<ChainLink>& links, Vector2d to_end, Damping damping) {
-  std::vector<Gain> gains(links.size());
+ChainStep step_along(const std::vector<ChainLink>& links, Vector2d to_end, Damping damping) {
+  ChainStep step{std::vector<Gain>(links.size()), 0};
   const double far = std::max(1.0, to_end.norm());
   Vector2d slope = to_end / far;
   Matrix2d curve = (Matrix2d::Identity() - slope * slope.transpose()) / far;
@@ -113,15 +113,16 @@ std::vector<Gain> gains_of(const std::vector<ChainLink>& links, Vector2d to_end,
     }
     const double price = damping.leaving * kDampingUnit;
     const double firm = std::max(q_uu + price * b.squaredNorm(), 0.05 * scale) + damping.turning * scale;
-    auto& gain = gains[i];
+    auto& gain = step.gains[i];
     gain.turn = std::clamp(-q_u / firm, -kLongestTurn, kLongestTurn);
     gain.feedback = -(q_xu + price * (a.transpose() * b)) / firm;
+    step.promises -= gain.turn * (q_u + 0.5 * q_uu * gain.turn);
     slope = q_x + gain.feedback * (q_uu * gain.turn + q_u) + q_xu * gain.turn;
     curve = q_xx + gain.feedback * gain.feedback.transpose() * q_uu + gain.feedback * q_xu.transpose() +
             q_xu * gain.feedback.transpose();
     limit(curve);
   }
-  return gains;
+  return step;
 }
 
 }  // namespace glidehelm::planning

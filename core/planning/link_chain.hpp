@@ -59,8 +59,14 @@ struct Damping {
   double turning{}, leaving{};
 };
 
+/// The turns of all links, and by how many metres the quadratics say that they bring the end nearer, toll included.
+struct ChainStep {
+  std::vector<Gain> gains;
+  double promises{};
+};
+
 /// Backwards along a chain: the distance from `end` to the goal as a quadratic in each link's beginning, and the turns that it asks for
 /// (Jacobson and Mayne 1970). `to_end`: metres east and north from the goal's centre to the end of the chain.
-std::vector<Gain> gains_of(const std::vector<ChainLink>& links, Eigen::Vector2d to_end, Damping damping);
+ChainStep step_along(const std::vector<ChainLink>& links, Eigen::Vector2d to_end, Damping damping);
 
 }  // namespace glidehelm::planning

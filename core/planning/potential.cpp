@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/planning/flight.hpp"
-#include "core/planning/goal_distance.hpp"
+#include "core/vehicle/goal_distance.hpp"
 
 namespace glidehelm::planning {
 
@@ -188,7 +188,7 @@ bool Potential::is_swept(std::size_t node) const {
 
 /// Dijkstra's order with re-opening: a current that outruns the glider may lead back past nodes that are done.
 void Potential::bring_outwards(const vehicle::Disc& goal, const std::function<double(double lat, double lon)>& beyond) {
-  const GoalDistance distance{goal};
+  const vehicle::GoalDistance distance{goal};
   Agenda agenda;
   const auto put = [&](std::size_t node, double left) {
     if (left >= left_[node] - kWorthWhile) return;

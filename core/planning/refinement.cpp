@@ -64,8 +64,8 @@ class Refinement {
       ++statistics_.expansions;
       if (!differentiate()) return;
       const double damped = std::max(1.0, damping_);
-      free_ = gains_of(links_, to_end_, {damping_, 0});
-      held_ = gains_of(links_, to_end_, {0, damped});
+      free_ = step_along(links_, to_end_, {damping_, 0}).gains;
+      held_ = step_along(links_, to_end_, {0, damped}).gains;
       Way better = step_forward();
       if (!(better.gain > 0)) {
         if (++dampings > kMostDampings) break;

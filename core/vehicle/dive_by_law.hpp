@@ -2,6 +2,7 @@
 
 #include <span>
 
+#include "core/base/local_metric.hpp"
 #include "core/vehicle/steering.hpp"
 
 /// One dive as the glider flies it: by dead reckoning towards waypoints. The inside of steering.hpp.
@@ -14,8 +15,9 @@ struct DiveFlown {
 };
 
 /// Heading = bearing − asin(cross/Û), where cross is the part of the believed current to the right of the bearing.
-/// |cross| ≥ Û steers square to the bearing, as far up-current as it goes. Radians in, radians out.
-double steered_heading(double bearing, Current believed, MetresPerSecond believed_speed);
+/// |cross| ≥ Û steers square to the bearing, as far up-current as it goes. Sines and cosines in and out: they are what each step of a dive
+/// needs of both angles, and sin(asin x) is x.
+SineCosine steered_heading(SineCosine bearing, Current believed, MetresPerSecond believed_speed);
 
 /// Flies from `from` for `seconds` by the law of product.md 6 (slocum.md 4.4).
 ///
@@ -28,8 +30,8 @@ double steered_heading(double bearing, Current believed, MetresPerSecond believe
 /// With `waters.full` the true current is that at the depth of the yo-yo, in steps of a minute, which are 9 m of a usual
 /// glider's depth; else `waters.ocean.dive`.
 ///
-/// Steps of at most 2 min by the midpoint rule: with a current that changes by 3e-5 1/s along the way (1 m/s over 30 km)
-/// the error of the rule is (2 min · 3e-5)²/6 = 2e-6 of the way, centimetres per stint. The bearing is that of the
+/// Steps of at most 5 min by the midpoint rule: with a current that changes by 3e-5 1/s along the way (1 m/s over 30 km)
+/// the error of the rule is (5 min · 3e-5)²/6 = 1.4e-5 of the way, decimetres per stint. The bearing is that of the
 /// geodesic to 1e-4 rad; it is the geodesic's own beyond 50 km.
 ///
 /// The arrival is where the straight step enters the goal's disc. Ends early when it is lost. `target` is left where the

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/vehicle/goal_distance.hpp"
+
 namespace glidehelm::vehicle {
 
 namespace {
@@ -12,7 +14,6 @@ constexpr double kStepTolerance = 0.02;  // metres per step
 constexpr double kLongestStep = 1200.0, kShortestStep = 10.0;
 constexpr double kCrossing = 0.05;    // seconds
 constexpr double kNoMoreTime = 1e-6;  // seconds: shorter than anything that matters, longer than rounding
-constexpr double kNear = 50'000.0;    // metres: where the local metric is exact enough
 constexpr double kSlack = 1.0;        // metres: distances of the chart round, and a track that slides along is not lost
 constexpr int kGrazes = 8;            // parts of a step in which an arrival is looked for
 
@@ -86,20 +87,16 @@ State state_at(GeoPoint p, double t_s, const Waters& waters) {
   return s;
 }
 
-double distance_near(double lat, double lon, const Disc& disc) {
-  const double centre_lat = disc.centre.lat.radians(), centre_lon = disc.centre.lon.radians();
-  const double bound = distance_lower_bound(lat, lon, centre_lat, centre_lon);
-  if (bound <= kNear) return local_offset(lat, lon, centre_lat, centre_lon).length();
-  // The bound is at most 1 % short, so only near the rim of a very large disc the truth is needed.
-  if (bound > disc.radius.si()) return bound;
-  return distance(GeoPoint::from_kernel(lat, lon), disc.centre).si();
-}
+double distance_near(double lat, double lon, const Disc& disc) { return GoalDistance{disc}.near(lat, lon); }
 
 std::optional<double> entry_into(const Disc& disc, double lat0, double lon0, double lat1, double lon1) {
-  const double radius = disc.radius.si();
-  const double before = distance_near(lat0, lon0, disc), after = distance_near(lat1, lon1, disc);
+  const GoalDistance goal{disc};
+  return entry_into(disc.radius, goal.near(lat0, lon0), goal.near(lat1, lon1), local_offset(lat0, lon0, lat1, lon1));
+}
+
+std::optional<double> entry_into(Metres disc_radius, double before, double after, const Offset& way) {
+  const double radius = disc_radius.si();
   if (before <= radius) return 0.0;
-  const auto way = local_offset(lat0, lon0, lat1, lon1);
   const double length2 = way.east * way.east + way.north * way.north;
   if (length2 <= 0 || before - radius > std::sqrt(length2)) return std::nullopt;
   // In the triangle of the step and the centre: the projection of the centre onto the step, by the law of cosines.

@@ -95,14 +95,14 @@ struct WaterVelocity {
 Motion move(const Waters& waters, ocean::FieldRef field, State from, double duration, WaterVelocity through_water,
             const Disc* goal);
 
-/// Distance in metres from a position to the centre of a disc, for inner loops: the local metric (to 0.01 %) within
-/// 50 km. Farther away a lower bound of the geodesic, unless the disc itself is so large that it matters; then the
-/// geodesic.
+/// GoalDistance::near (goal_distance.hpp), for those who ask once.
 double distance_near(double lat, double lon, const Disc& disc);
 
 /// Where the straight line between two positions enters a disc, as a fraction of the way: 0 when it begins inside, none
 /// when it does not come in. For steps that are short against the Earth.
 std::optional<double> entry_into(const Disc& disc, double lat0, double lon0, double lat1, double lon1);
+/// The same of a way whose ends are `before` and `after` metres from the centre.
+std::optional<double> entry_into(Metres disc_radius, double before, double after, const Offset& way);
 
 /// Length in seconds of the Runge–Kutta step with which lanes may be flown: a whole fraction of `stint`, the longest of
 /// stint/⌈stint/1 h⌉, halved until it is good enough, 5 min at least.

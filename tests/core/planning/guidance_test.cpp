@@ -5,9 +5,9 @@
 
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/flight.hpp"
-#include "core/planning/goal_distance.hpp"
 #include "core/planning/lower_bound.hpp"
 #include "core/planning/to_go.hpp"
+#include "core/vehicle/goal_distance.hpp"
 #include "tests/support/planning.hpp"
 
 using namespace glidehelm;
@@ -66,7 +66,7 @@ TEST_CASE("from many places no heuristic says more than the front of all that ca
         p.guidance.heuristic = heuristic;
         const planning::ToGo to_go{p, ocean, chart::Chart{}};
         const double lat = p.start.fix.lat.radians(), lon = p.start.fix.lon.radians();
-        const double h = to_go.from_fix(lat, lon, planning::GoalDistance{goal}.least(lat, lon));
+        const double h = to_go.from_fix(lat, lon, vehicle::GoalDistance{goal}.least(lat, lon));
         INFO(sea.name << " " << static_cast<int>(heuristic) << ": " << h << " s, the front " << bound.travel_s);
         CHECK(h <= bound.travel_s + 2 * bound.error_s);
         CHECK(h >= before * (1 - 1e-12));  // and each is at least the weaker one

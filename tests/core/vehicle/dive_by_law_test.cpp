@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/base/local_metric.hpp"
+#include "core/ocean/analytic.hpp"
 #include "core/safety/reflight.hpp"
 #include "tests/support/planning.hpp"
 
@@ -35,10 +37,15 @@ GeoPoint off(GeoPoint from, double east, double north) {
 TEST_CASE("the heading leans into the believed current by the arc sine of its share across") {
   const MetresPerSecond u{0.25};
   // slocum.md 4.4: 0.15 m/s across at 0.25 m/s are 36.9 degrees.
-  CHECK(vehicle::steered_heading(0, current(0.15, 0), u) == Approx(-36.87 * kPi / 180).margin(1e-4));
-  CHECK(vehicle::steered_heading(kPi / 2, current(0, -0.15), u) == Approx(kPi / 2 - 36.87 * kPi / 180).margin(1e-4));
-  CHECK(vehicle::steered_heading(1.0, current(0, 0), u) == 1.0);
-  CHECK(vehicle::steered_heading(0, current(0.4, 0), u) == Approx(-kPi / 2));  // no more than square to the bearing
+  const auto steered = [&](double bearing, Current believed) {
+    const auto h = vehicle::steered_heading(SineCosine::of(bearing), believed, u);
+    CHECK(std::hypot(h.sine, h.cosine) == Approx(1).epsilon(1e-14));
+    return std::atan2(h.sine, h.cosine);
+  };
+  CHECK(steered(0, current(0.15, 0)) == Approx(-36.87 * kPi / 180).margin(1e-4));
+  CHECK(steered(kPi / 2, current(0, -0.15)) == Approx(kPi / 2 - 36.87 * kPi / 180).margin(1e-4));
+  CHECK(steered(1.0, current(0, 0)) == Approx(1.0).epsilon(1e-14));
+  CHECK(steered(0, current(0.4, 0)) == Approx(-kPi / 2));  // no more than square to the bearing
 }
 
 TEST_CASE("a believed current that is true is compensated: the track leads straight to the waypoint") {
@@ -63,6 +70,31 @@ TEST_CASE("an ignored current carries the glider off by its whole way") {
   // Metric of 28° at the start against the way's: 4320 m · tan 28°/R = 3.6e-4 of 2880 m, 1 m.
   CHECK(distance(flown.motion.end.at(), there).si() < 2);
   CHECK(flown.first_heading.degrees() == Approx(0).margin(0.01));
+}
+
+TEST_CASE("in a turning current a dive ends where the closed form says, to what the midpoint rule turns too little") {
+  // On the equator, heading held north through water that turns with ω: the track is an arc of radius U/ω round a point to the west, flown
+  // with speed U. The midpoint rule turns (ω·5 min)²/6 = 1.4e-5 of the arc too little: 6 cm of 4320 m.
+  ocean::AnalyticSpec spec;
+  spec.kind = "solid-body";
+  spec.origin = geo_point(0, 0);
+  const double omega = 3e-5;
+  spec.length_scale = Metres{1 / omega};  // with a speed scale of 1 m/s
+  const auto field = ocean::AnalyticField::make(spec, instant_at(test::kT0)).value();
+  const chart::Chart open;
+  const vehicle::Waters waters{{field, field}, open, Metres{0}};
+  vehicle::Flight flight;
+  flight.fix = spec.origin;
+  flight.goal = {geo_point(20, 0), Metres{1000}};
+  flight.horizon_s = test::kT0 + 1e7;
+  const std::vector<GeoPoint> points{geo_point(3, 0)};
+  std::size_t target = 0;
+  const auto flown = dive_by_law(flight, waters, vehicle::state_at(flight.fix, test::kT0, waters), kStint, points,
+                                 target, Metres{100}, false, {});
+  const double angle = omega * kStint, radius = flight.glider.horizontal_speed.si() / omega;
+  const auto off = local_offset(0, 0, flown.motion.end.lat, flown.motion.end.lon);
+  CHECK(off.east == Approx(radius * (std::cos(angle) - 1)).margin(0.1));
+  CHECK(off.north == Approx(radius * std::sin(angle)).margin(0.1));
 }
 
 TEST_CASE("a ring is crossed on the dead-reckoned way, and the next waypoint follows under water") {
@@ -92,7 +124,7 @@ TEST_CASE("after the last waypoint the list begins again when it loops, a single
   target = 0;
   const auto flown = dive_by_law(s.flight, s.waters, s.start(), kStint, one, target, Metres{200}, true, {});
   CHECK(target == 0);
-  CHECK(distance(flown.motion.end.at(), points[0]).si() < 40);  // circles within a step (36 m) of it
+  CHECK(distance(flown.motion.end.at(), points[0]).si() < 95);  // circles within a step (90 m) of it
 }
 
 TEST_CASE("a current stronger than the glider against its heading is held towards a waypoint up-current") {

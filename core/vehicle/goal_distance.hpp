@@ -4,16 +4,15 @@
 #include <cmath>
 
 #include "core/base/local_metric.hpp"
-#include "core/base/units.hpp"
 #include "core/vehicle/motion.hpp"
 
-namespace glidehelm::planning {
+namespace glidehelm::vehicle {
 
-/// How far the goal's centre is at least, and where it lies, from positions in radians: for kernels that ask millions of times.
+/// How far the goal's centre is, and where it lies, from positions in radians: for kernels that ask millions of times.
 class GoalDistance {
  public:
-  explicit GoalDistance(const vehicle::Disc& goal)
-      : lat_{goal.centre.lat.radians()}, lon_{goal.centre.lon.radians()}, cos_{std::cos(lat_)} {}
+  explicit GoalDistance(const Disc& goal)
+      : goal_{goal}, lat_{goal.centre.lat.radians()}, lon_{goal.centre.lon.radians()}, cos_{std::cos(lat_)} {}
 
   [[nodiscard]] double lat() const { return lat_; }
   [[nodiscard]] double lon() const { return lon_; }
@@ -27,6 +26,15 @@ class GoalDistance {
     const double x2 = s * s + cosine_at_most(lat) * cos_ * t * t, x = std::sqrt(std::max(0.0, x2));
     return 2 * kSmallestRadius * x * (1 + x2 * (1.0 / 6 + x2 * (3.0 / 40 + x2 * (15.0 / 336))));
   }
+  /// Metres, by the local metric (to 0.01 %) within 50 km. Farther away `least`, unless the disc itself is so large that it matters; then the
+  /// geodesic.
+  [[nodiscard]] double near(double lat, double lon) const {
+    const double bound = least(lat, lon);
+    if (bound <= kNear) return local_offset(lat, lon, lat_, lon_).length();
+    // The bound is at most 1 % short, so only near the rim of a very large disc the truth is needed.
+    if (bound > goal_.radius.si()) return bound;
+    return distance(GeoPoint::from_kernel(lat, lon), goal_.centre).si();
+  }
   /// Direction to the goal on the sphere, not normalised.
   [[nodiscard]] Offset direction(double lat, double lon) const {
     const double dlon = lon_ - lon;
@@ -35,6 +43,7 @@ class GoalDistance {
 
  private:
   static constexpr double kSmallestRadius = 6'335'439.0;  // of curvature of WGS84
+  static constexpr double kNear = 50'000.0;               // metres: where the local metric is exact enough
 
   /// 0 ≤ x ≤ π/2; to 2e-4 there, to 1e-9 for x < 0.3.
   static double sine_at_most(double x) {
@@ -47,7 +56,8 @@ class GoalDistance {
     return 1 - x2 * (1.0 / 2 - x2 * (1.0 / 24 - x2 * (1.0 / 720 - x2 * (1.0 / 40320 - x2 * (1.0 / 3628800)))));
   }
 
+  Disc goal_;
   double lat_, lon_, cos_;
 };
 
-}  // namespace glidehelm::planning
+}  // namespace glidehelm::vehicle

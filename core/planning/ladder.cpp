@@ -1,5 +1,6 @@
 #include "core/planning/ladder.hpp"
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -12,6 +13,13 @@
 #include "core/planning/to_go.hpp"
 
 namespace glidehelm::planning {
+
+namespace {
+
+/// Where a least distance counts each of them ends behind other islands now and then; together they take a tenth of a second.
+constexpr std::array kSlopeKernels{Kernel::quasi_newton, Kernel::least_squares, Kernel::sqp};
+
+}  // namespace
 
 Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, const chart::Chart& chart,
                                          const Budget& budget, const std::function<void(const Plan&)>& better) const {
@@ -47,6 +55,9 @@ Expected<Plan, PlanFailure> Ladder::plan(const Problem& asked, Members members, 
     offer(std::move(polished.plan));
     if (polished.in_doubt && !wants_least_distance(problem) && !purse.is_empty())
       take(IterativeOptimization{}.plan(problem, members, chart, purse.rest(), {}));
+    for (const auto kernel : kSlopeKernels)
+      if (!best->reaches_goal() && !purse.is_empty())
+        take(Optimization{OptimizationSettings{.kernel = kernel}}.plan(problem, members, chart, purse.rest(), {}));
   }
   best->statistics = purse.spent();
   best->cut_at = purse.cut_at();

@@ -95,6 +95,7 @@ class FlightRefinement {
     const double travel = best_s_ - problem_.start.fix_s;
     for (const auto damping : kDampings) {
       const auto step = step_along(links_, to_end_, damping);
+      // Through water, not over ground, and toll counts as way: the scale of what is won, not the time itself.
       const double promised = step.promises / problem_.glider.horizontal_speed.si();
       if (!(promised >= kWorthwhile * travel && promised <= kIncredible * travel)) continue;
       for (const double share : kShares) {

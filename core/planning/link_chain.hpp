@@ -59,7 +59,7 @@ struct Damping {
   double turning{}, leaving{};
 };
 
-/// The turns of all links, and by how many metres the quadratics say that they bring the end nearer, toll included.
+/// The turns of all links, and how many metres the quadratics say that they win when taken whole: the end is nearer, or less toll is paid.
 struct ChainStep {
   std::vector<Gain> gains;
   double promises{};

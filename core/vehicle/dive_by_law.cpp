@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kStep = 300.0;       // seconds
 constexpr double kYoStep = 60.0;      // seconds: 9 m of depth for a usual glider
+constexpr double kTurnStep = 60.0;    // seconds: in the ring of the last point, which a held heading leads past
 constexpr double kNoTimeLeft = 1e-6;  // seconds
 constexpr double kIntoRing = 0.01;    // seconds past a ring's crossing
 constexpr double kPlane = 50'000.0;   // metres: where a plane is good enough for a bearing
@@ -24,7 +25,7 @@ struct Vector {
   /// From north, clockwise; north where it has no direction.
   [[nodiscard]] SineCosine azimuth() const {
     const double l = length();
-    return l > 0 ? SineCosine{east / l, north / l} : SineCosine{0, 1};
+    return l == 0 ? SineCosine{0, 1} : SineCosine{east / l, north / l};
   }
 };
 
@@ -84,7 +85,6 @@ class Dive {
   /// Distance and direction of a waypoint from the dead-reckoned position, as a vector in the plane whose north is that position's own. The
   /// straight offset is seen from the middle of the way, where the meridian has turned by half the convergence.
   [[nodiscard]] Vector seen(GeoPoint to) const {
-    static const AnglesNear kTurns{0};
     const double to_lat = to.lat.radians(), dlon = longitude_difference(reckoned_lon_, to.lon.radians());
     const auto middle = latitudes_.at(0.5 * (reckoned_lat_ + to_lat));
     const auto metric = LocalMetric::of(middle);
@@ -93,7 +93,7 @@ class Dive {
       const auto line = geodesic(GeoPoint::from_kernel(reckoned_lat_, reckoned_lon_), to);
       return {line.length.si() * line.departing.east(), line.length.si() * line.departing.north()};
     }
-    const auto half = kTurns.at(0.5 * dlon * middle.sine);
+    const auto half = turns_.at(0.5 * dlon * middle.sine);
     return {offset.east * half.cosine - offset.north * half.sine, offset.east * half.sine + offset.north * half.cosine};
   }
 
@@ -111,7 +111,7 @@ class Dive {
   /// Seconds until the dead-reckoned position is inside the ring around its aim; a whole step when it is not soon.
   [[nodiscard]] double until_ring(const Vector& aim, const Vector& v) const {
     const double d = aim.length();
-    if (d <= radius_) return kStep;
+    if (d <= radius_) return kTurnStep;
     const double towards_it = (aim.east * v.east + aim.north * v.north) / d;
     const double sideways = (aim.east * v.north - aim.north * v.east) / d;
     const double speed2 = towards_it * towards_it + sideways * sideways;
@@ -180,7 +180,7 @@ class Dive {
   double reckoned_lat_, reckoned_lon_;
   double radius_;
   Current believed_;
-  AnglesNear latitudes_;
+  AnglesNear latitudes_, turns_{0};
   GoalDistance to_goal_;
   double away_;  ///< metres from here to the goal
   Motion motion_;

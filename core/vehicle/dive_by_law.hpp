@@ -34,7 +34,8 @@ SineCosine steered_heading(SineCosine bearing, Current believed, MetresPerSecond
 /// the error of the rule is (5 min · 3e-5)²/6 = 1.4e-5 of the way, decimetres per stint. The bearing is that of the
 /// geodesic to 1e-4 rad; it is the geodesic's own beyond 50 km.
 ///
-/// The arrival is where the straight step enters the goal's disc. Ends early when it is lost. `target` is left where the
+/// Within the ring of a point that stays the target steps are a minute. The arrival is where the straight step enters the goal's disc; `closest` is
+/// looked for at the ends of steps. Ends early when it is lost. `target` is left where the
 /// dive left it. Precondition: at least one point, 0 ≤ target < points.
 DiveFlown dive_by_law(const Flight& flight, const Waters& waters, const State& from, double seconds,
                       std::span<const GeoPoint> points, std::size_t& target, Metres radius, bool loops,

@@ -26,12 +26,12 @@ class GoalDistance {
     const double x2 = s * s + cosine_at_most(lat) * cos_ * t * t, x = std::sqrt(std::max(0.0, x2));
     return 2 * kSmallestRadius * x * (1 + x2 * (1.0 / 6 + x2 * (3.0 / 40 + x2 * (15.0 / 336))));
   }
-  /// Metres, by the local metric (to 0.01 %) within 50 km. Farther away `least`, unless the disc itself is so large that it matters; then the
-  /// geodesic.
+  /// Metres, by the local metric (to 0.01 %) within 50 km. Farther away `least`, which may be 1 % less, unless the disc itself is so large that it
+  /// matters; then the geodesic.
   [[nodiscard]] double near(double lat, double lon) const {
     const double bound = least(lat, lon);
     if (bound <= kNear) return local_offset(lat, lon, lat_, lon_).length();
-    // The bound is at most 1 % short, so only near the rim of a very large disc the truth is needed.
+    // The bound is at most 1 % short within 5 000 km, so only near the rim of a very large disc the truth is needed.
     if (bound > goal_.radius.si()) return bound;
     return distance(GeoPoint::from_kernel(lat, lon), goal_.centre).si();
   }

@@ -101,7 +101,8 @@ double distance_near(double lat, double lon, const Disc& disc);
 /// Where the straight line between two positions enters a disc, as a fraction of the way: 0 when it begins inside, none
 /// when it does not come in. For steps that are short against the Earth.
 std::optional<double> entry_into(const Disc& disc, double lat0, double lon0, double lat1, double lon1);
-/// The same of a way whose ends are `before` and `after` metres from the centre.
+/// The same of a way in metres whose ends are `before` and `after` metres from the centre, as GoalDistance::near tells them: where it tells too
+/// little of both, a way is looked at for nothing.
 std::optional<double> entry_into(Metres disc_radius, double before, double after, const Offset& way);
 
 /// Length in seconds of the Runge–Kutta step with which lanes may be flown: a whole fraction of `stint`, the longest of

@@ -99,7 +99,7 @@ struct FlownList {
   std::optional<double> arrival_s;  ///< first entry into the goal's disc
   std::optional<Lost> lost;
   GeoPoint
-      closest;  ///< the position nearest to the goal's centre, drifts included (among positions beyond 50 km: to 1 %)
+      closest;  ///< the position nearest to the goal's centre, drifts included (at the ends of steps; among positions beyond 50 km: to 1 %)
 };
 
 /// Most stints of a plan.

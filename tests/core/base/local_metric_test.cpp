@@ -47,7 +47,7 @@ TEST_CASE("sines and cosines near an angle are the library's, beside it and far 
   for (const double angle : {-1.4, -0.3, 0.0, 0.02, 0.7, 1.55}) {
     const AnglesNear near{angle};
     for (int i = -60; i <= 60; ++i) {
-      const double d = i * AnglesNear::kReach / 40;  // half of them beyond the reach
+      const double d = i * AnglesNear::kReach / 40;  // a third of them beyond the reach
       CAPTURE(angle, d);
       // The series stops 0.02⁷/5040 = 3e-16 short, and four roundings of numbers up to 1 are 4e-16.
       CHECK(std::abs(near.at(angle + d).sine - std::sin(angle + d)) <= 1e-15);

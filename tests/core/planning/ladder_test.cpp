@@ -1,5 +1,6 @@
 #include "core/planning/ladder.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 
 #include "core/planning/optimization.hpp"
@@ -44,7 +45,7 @@ TEST_CASE("best is never worse than any single method and wears the name of the 
 }
 
 TEST_CASE("short of the goal best is behind no kernel of optimization that uses slopes") {
-  // Among these islands two of the kernels end 4 km behind the third; refinement ends 6 m behind it.
+  // Among these islands two of the kernels end more than 3 km behind the third, and refinement some metres.
   const auto sea = suite::dynamic_cases(MetresPerSecond{0.4}, 18).back();
   const std::array<ocean::Ocean, 1> members{sea.ocean()};
   const auto remaining = [&](const planning::Planner& planner) {

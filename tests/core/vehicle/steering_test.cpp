@@ -308,7 +308,7 @@ TEST_CASE("a plan's next surfacing is that of its list flown by the verifier") {
         INFO(sea.name << " correction " << correction << " bearing " << bearing);
         const auto alone = fly_list(list, s.flight, s.waters);
         REQUIRE_FALSE(alone.stints.empty());
-        // Both fly the same law, one with steps of 2 min, one of 1 min, through fields of at most 6e-5 1/s: centimetres.
+        // Both fly the same law, one with steps of 5 min, one of 1 min, through fields of at most 6e-5 1/s: (5 min · 6e-5)²/6 of 8 km, 0.4 m.
         CHECK(distance(independent(list, s).surfaced, alone.stints[0].surface).si() < 2.0);
         // The plan's w_2 stands in for the list's after the ring of w_1. Where 5 % of 8 km are left, 400 m: both are
         // dived for from ends that differ by what those 400 m are turned (50 degrees: 310 m), which is seen from the ring,

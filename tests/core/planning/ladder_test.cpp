@@ -45,7 +45,8 @@ TEST_CASE("best is never worse than any single method and wears the name of the 
 }
 
 TEST_CASE("short of the goal best is behind no kernel of optimization that uses slopes") {
-  // Among these islands two of the kernels end more than 3 km behind the third, and refinement some metres.
+  // Among these islands kernels end in two valleys, more than 3 km apart at the horizon. Which of them ends in which hangs on last bits, and so on
+  // the compiler; refinement alone ends some metres behind one of them at least.
   const auto sea = suite::dynamic_cases(MetresPerSecond{0.4}, 18).back();
   const std::array<ocean::Ocean, 1> members{sea.ocean()};
   const auto remaining = [&](const planning::Planner& planner) {
@@ -55,14 +56,11 @@ TEST_CASE("short of the goal best is behind no kernel of optimization that uses 
     return plan->remaining.si();
   };
   const double best = remaining(planning::Ladder{});
-  double least = 1e9, most = 0;
   for (const auto kernel : {planning::Kernel::quasi_newton, planning::Kernel::least_squares, planning::Kernel::sqp}) {
     const double left = remaining(planning::Optimization{planning::OptimizationSettings{.kernel = kernel}});
     INFO(planning::word(kernel) << " leaves " << left);
     CHECK(best <= left);
-    least = std::min(least, left), most = std::max(most, left);
   }
-  CHECK(most - least > 3000);
 }
 
 TEST_CASE("searches that end in the same valley leave no doubt, and those that do not arrive leave some") {

@@ -7,7 +7,7 @@
 
 namespace glidehelm {
 
-/// Sine and cosine of one angle.
+/// Sine and cosine of one angle, which is in radians.
 struct SineCosine {
   double sine{}, cosine{};
   static SineCosine of(double angle) { return {std::sin(angle), std::cos(angle)}; }
@@ -15,8 +15,8 @@ struct SineCosine {
 
 /// Sines and cosines of angles near one of them, by a series: for loops that ask at every step while the angle changes little.
 ///
-/// Within `kReach` of the first angle the same as the library's to 1e-15 (the first term that is left out is kReach⁷/7!), in a tenth of its time;
-/// farther off they are the library's. Radians.
+/// Within `kReach` of the first angle the same as the library's to 1e-15 (the first term that is left out is kReach⁷/7!); farther off they are the
+/// library's. Radians.
 class AnglesNear {
  public:
   explicit AnglesNear(double angle) : angle_{angle}, at_{SineCosine::of(angle)} {}

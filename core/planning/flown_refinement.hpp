@@ -22,7 +22,8 @@ struct RefinedFlight {
 /// feedback on where the glider really dives. A step counts only when that flight arrives earlier, so the answer is never worse. Refined flights keep
 /// half a per cent of a stint's way beyond the coastal margin, for the verifier's own integrator; a plan that is nearer to land is left alone.
 ///
-/// A round is thirteen lanes for each stint and up to three dozen flights, few but in the last one; `Budget::work` counts rounds. Deterministic.
+/// A step is flown only where its quadratics promise a gain worth having and no more than a tenth of the travel time. A round is thirteen lanes for
+/// each stint and up to three dozen flights, few away from land; `Budget::work` counts rounds. Deterministic.
 RefinedFlight refine_flown(const Plan& plan, const Problem& problem, const ocean::Ocean& ocean,
                            const chart::Chart& chart, const Budget& budget);
 

@@ -21,8 +21,7 @@ class GoalDistance {
   /// x = sin(angle/2), and all series are cut where they are below what they stand for.
   [[nodiscard]] double least(double lat, double lon) const {
     const double s = sine_at_most(0.5 * std::abs(lat_ - lat));
-    const double t =
-        sine_at_most(0.5 * std::abs(std::abs(lon_ - lon) <= kPi ? lon_ - lon : std::remainder(lon_ - lon, 2 * kPi)));
+    const double t = sine_at_most(0.5 * std::abs(longitude_difference(lon, lon_)));
     const double x2 = s * s + cosine_at_most(lat) * cos_ * t * t, x = std::sqrt(std::max(0.0, x2));
     return 2 * kSmallestRadius * x * (1 + x2 * (1.0 / 6 + x2 * (3.0 / 40 + x2 * (15.0 / 336))));
   }

@@ -7,6 +7,7 @@
 #include "core/planning/cts_astar.hpp"
 #include "core/planning/direct_to_goal.hpp"
 #include "core/planning/flight.hpp"
+#include "core/planning/link_chain.hpp"
 #include "tests/support/planning.hpp"
 
 using namespace glidehelm;
@@ -33,6 +34,9 @@ TEST_CASE("straight through still water no flight is earlier") {
   const auto refined = planning::refine_flown(*direct, p, ocean, open, {});
   // The straight line is the shortest: what a flight could win is the rounding of its steps, centimetres of 30 km.
   if (refined.flown) CHECK(*refined.flown->arrival_s == Approx(direct->arrival_s).margin(1.0));
+  // Nothing is promised, so one round is measured and no step is flown beside the flight of the plan itself.
+  CHECK(refined.statistics.expansions == 1);
+  CHECK(refined.statistics.cost_evaluations == (planning::kLinkLanes + 1) * direct->stints.size());
 }
 
 TEST_CASE(
@@ -59,7 +63,7 @@ TEST_CASE(
       const auto again = vehicle::fly_headings(wanted, flight, waters);
       REQUIRE(again.arrival_s);
       CHECK(*again.arrival_s - test::kT0 == Approx(time).margin(1e-3));
-      // At an optimum a turn by ε gains nothing to first order. Rounds end below 3e-6 of some 30 h, 0.3 s, or where none of eighteen steps is
+      // At an optimum a turn by ε gains nothing to first order. Rounds end below 3e-6 of some 30 h, 0.3 s, won or promised, or where none of eighteen steps is
       // earlier: the least share of a damped one is a hundredth of a turn, so of a turn of 1° that would gain g a step that gains 0.02·g is
       // looked for. 0.3 s of that are 15 s.
       for (std::size_t k = 0; k < wanted.size(); ++k)
